@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+# Flags every target of the project is compiled with, and the two functions that declare targets.
+
+add_library(ds_options INTERFACE)
+target_include_directories(ds_options INTERFACE "${CMAKE_SOURCE_DIR}")
+# Strict arithmetic on the host too: what it computes (normalised models, tone maps) is in the pixels.
+target_compile_options(ds_options INTERFACE -ffp-contract=off -fno-fast-math
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast -Wnon-virtual-dtor
+  -Woverloaded-virtual -Wcast-qual -Wformat=2 -Wundef -Wimplicit-fallthrough)
+if(DS_WERROR)
+  target_compile_options(ds_options INTERFACE -Werror)
+endif()
+if(DS_SANITIZE)
+  target_compile_options(ds_options INTERFACE -fsanitize=${DS_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(ds_options INTERFACE -fsanitize=${DS_SANITIZE})
+endif()
+
+# ds_library(NAME SOURCES a.cc ... LIBS b ...): one static library for one folder.
+function(ds_library name)
+  cmake_parse_arguments(A "" "" "SOURCES;LIBS;PRIVATE_LIBS" ${ARGN})
+  add_library(${name} STATIC ${A_SOURCES})
+  target_link_libraries(${name} PUBLIC ds_options fmt::fmt ${A_LIBS} PRIVATE ${A_PRIVATE_LIBS})
+endfunction()
+
+# ds_test(NAME SOURCES a_test.cc ... LIBS b ... [LABELS slow render]): one GoogleTest program, one CTest entry a test.
+# DS_SOURCE_DIR holds the project's root, so that tests find assets and ../shared/data.
+function(ds_test name)
+  cmake_parse_arguments(A "" "" "SOURCES;LIBS;LABELS" ${ARGN})
+  add_executable(${name} ${A_SOURCES})
+  target_link_libraries(${name} PRIVATE ${A_LIBS} ds_options GTest::gtest GTest::gmock GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE DS_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${A_LABELS}")
+endfunction()

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/base/files.h"
+
+#include <gtest/gtest.h>
+
+#include <iterator>
+
+#include "tracer/base/error.h"
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+auto entries(const fs::path& folder) { return std::distance(fs::directory_iterator(folder), {}); }
+
+TEST(FilesTest, writes_replaces_and_makes_parents) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "a" / "b" / "c.txt";
+  write_file_atomic(file, "one");
+  write_file_atomic(file, "two");
+  EXPECT_EQ(read_text_file(file), "two");
+  EXPECT_EQ(entries(file.parent_path()), 1);
+}
+
+TEST(FilesTest, a_failed_write_leaves_nothing_behind) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder.path() / "taken");
+  write_file_atomic(folder.path() / "taken" / "x", "keeps the folder from being replaced");
+  EXPECT_THROW(write_file_atomic(folder.path() / "taken", "text"), Error);
+  EXPECT_EQ(entries(folder.path()), 1);
+  EXPECT_THROW(write_file_atomic("/dev/full/x", "text"), Error);
+}
+
+TEST(FilesTest, linking_makes_equal_bytes_and_replaces) {
+  const TemporaryFolder folder;
+  write_file_atomic(folder.path() / "from", "bytes");
+  write_file_atomic(folder.path() / "to", "old");
+  link_file_atomic(folder.path() / "from", folder.path() / "to");
+  EXPECT_EQ(read_text_file(folder.path() / "to"), "bytes");
+  EXPECT_EQ(entries(folder.path()), 2);
+  EXPECT_THROW(link_file_atomic(folder.path() / "none", folder.path() / "to"), Error);
+  EXPECT_EQ(read_text_file(folder.path() / "to"), "bytes");
+}
+
+TEST(FilesTest, reading_tells_the_path_and_the_reason) {
+  try {
+    read_text_file("/nonexistent/file");
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::io);
+    EXPECT_STREQ(error.what(), "/nonexistent/file: cannot open: No such file or directory");
+  }
+}
+
+}  // namespace
+}  // namespace ds

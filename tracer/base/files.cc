@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/base/files.h"
+
+#include <fcntl.h>
+#include <linux/fs.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "tracer/base/error.h"
+#include "tracer/base/hash.h"
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail_errno(const fs::path& path, const char* what) {
+  const int error = errno;
+  fail(ErrorKind::io, "{}: cannot {}: {}", path.string(), what, std::generic_category().message(error));
+}
+
+/// An open file descriptor that closes itself; `close` reports what the destructor has to swallow.
+class Descriptor {
+ public:
+  Descriptor(const fs::path& path, int flags) : path_(path), fd_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {
+    if (fd_ < 0) fail_errno(path, "open");
+  }
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+  void sync() const {
+    if (::fsync(fd_) != 0) fail_errno(path_, "sync");
+  }
+  void close() {
+    const int fd = std::exchange(fd_, -1);
+    if (::close(fd) != 0) fail_errno(path_, "close");
+  }
+
+ private:
+  fs::path path_;
+  int fd_;
+};
+
+/// Removes the file unless it was renamed away.
+class TemporaryName {
+ public:
+  explicit TemporaryName(const fs::path& target) {
+    // Process and counter keep writers of one target apart; a crashed writer's leftover is simply overwritten.
+    static std::atomic<unsigned> counter{0};
+    path_ = target.parent_path() /
+            fmt::format(".{}.{}.{}.tmp", target.filename().string(), ::getpid(), counter.fetch_add(1));
+  }
+  ~TemporaryName() {
+    if (!renamed_) ::unlink(path_.c_str());
+  }
+  TemporaryName(const TemporaryName&) = delete;
+  TemporaryName& operator=(const TemporaryName&) = delete;
+  const fs::path& path() const { return path_; }
+  void rename_to(const fs::path& target) {
+    if (::rename(path_.c_str(), target.c_str()) != 0) fail_errno(target, "rename a finished temporary to");
+    renamed_ = true;
+    sync_folder(target.parent_path());
+  }
+
+ private:
+  fs::path path_;
+  bool renamed_ = false;
+};
+
+/// A target with a parent folder, which exists.
+fs::path prepare_target(const fs::path& path) {
+  const fs::path target = fs::absolute(path);
+  make_folders(target.parent_path());
+  return target;
+}
+
+void write_all(const Descriptor& file, const fs::path& path, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t done = ::write(file.get(), bytes.data(), bytes.size());
+    if (done < 0 && errno == EINTR) continue;
+    if (done < 0) fail_errno(path, "write");
+    bytes = bytes.subspan(static_cast<std::size_t>(done));
+  }
+}
+
+bool reflink(const fs::path& from, const fs::path& to) {
+  const Descriptor source(from, O_RDONLY);
+  Descriptor target(to, O_WRONLY | O_CREAT | O_TRUNC);
+  const bool cloned = ::ioctl(target.get(), FICLONE, source.get()) == 0;
+  if (cloned) target.sync();
+  target.close();
+  return cloned;
+}
+
+}  // namespace
+
+std::string read_text_file(const fs::path& path) {
+  if (fs::is_directory(path)) fail(ErrorKind::io, "{}: wanted a file, found a folder", path.string());
+  std::ifstream in(path, std::ios::binary);
+  if (!in) fail_errno(path, "open");
+  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (in.bad()) fail_errno(path, "read");
+  return text;
+}
+
+void make_folders(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) fail(ErrorKind::io, "{}: cannot make the folder: {}", folder.string(), error.message());
+}
+
+void sync_folder(const fs::path& folder) { Descriptor(folder, O_RDONLY | O_DIRECTORY).sync(); }
+
+void write_file_atomic(const fs::path& path, std::span<const std::byte> bytes) {
+  const fs::path target = prepare_target(path);
+  TemporaryName temporary(target);
+  Descriptor file(temporary.path(), O_WRONLY | O_CREAT | O_TRUNC);
+  write_all(file, target, bytes);
+  file.sync();
+  file.close();
+  temporary.rename_to(target);
+}
+
+void write_file_atomic(const fs::path& path, std::string_view text) { write_file_atomic(path, bytes_of(text)); }
+
+void link_file_atomic(const fs::path& from, const fs::path& to) {
+  const fs::path target = prepare_target(to);
+  TemporaryName temporary(target);
+  if (!reflink(from, temporary.path())) {
+    ::unlink(temporary.path().c_str());
+    if (::link(from.c_str(), temporary.path().c_str()) != 0) {
+      write_file_atomic(target, read_text_file(from));
+      return;
+    }
+  }
+  temporary.rename_to(target);
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (fs::temp_directory_path() / "dsbuild-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) fail_errno(name, "make a temporary folder");
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;  // a destructor has nobody to tell
+  fs::remove_all(path_, ignored);
+}
+
+}  // namespace ds
