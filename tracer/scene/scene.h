@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tracer/base/hash.h"
+#include "tracer/base/vec.h"
+#include "tracer/scene/mesh.h"
+
+namespace ds {
+
+/// The value of a material's or texture's input: a constant, or the output of a texture of the same scene.
+struct TextureRef {
+  Vec3 constant;     ///< linear Rec.709; a scalar stands in all three
+  int texture = -1;  ///< index into Scene::textures, or -1: constant
+};
+
+enum class ImageWrap { repeat, black, white, clamp };
+enum class ImageFilter { nearest, linear };
+enum class ImageChannel { rgb, red, green, blue, alpha, mean, colored_mean };
+
+/// An image file and how it is read. Pixels are loaded by tracer/render; row 0 is the top.
+struct Image {
+  std::filesystem::path file;
+  float gamma = 2.2f;  ///< linear = stored^gamma, for 8- and 16-bit images only; HDR images are linear whatever it says
+  float gain = 1.0f;
+  ImageWrap wrap = ImageWrap::repeat;
+  ImageFilter filter = ImageFilter::linear;
+  ImageChannel channel = ImageChannel::rgb;
+  Hash128 content;  ///< of the file's bytes
+  int width = 0, height = 0;
+  std::vector<float> rgb;  ///< width * height * 3, linear, after gamma and gain
+};
+
+/// A node of a texture graph; inputs always have lower indices. Types, inputs and numbers: scene/type_tables.h.
+struct Texture {
+  std::string name;
+  int type = 0;                    ///< row of texture_types()
+  std::vector<TextureRef> inputs;  ///< in the row's order
+  std::vector<float> numbers;      ///< in the row's order
+  Mat4 world_to_texture;           ///< 3D mappings: globalmapping3d's transformation, inverted as LuxCore applies it
+  float uv_transform[6] = {1, 0, 0, 0, 1, 0};  ///< 2D mappings: (s, t) = [a b c; d e f] (u, v, 1)
+  int image = -1;                  ///< index into Scene::images (imagemap)
+};
+
+struct Material {
+  std::string name;
+  int type = 0;                    ///< row of material_types()
+  std::vector<TextureRef> inputs;  ///< in the row's order
+  std::vector<float> numbers;      ///< in the row's order
+  int children[2] = {-1, -1};      ///< mix: indices of the two materials, both lower than its own
+  bool emits = false;
+  TextureRef emission;             ///< emitted radiance, W/(m^2 sr), all of LuxCore's gains applied
+};
+
+enum class LightKind { point, spot, sun, constant_infinite, infinite };
+
+/// A light that is no mesh. Direction and radiance are in world space.
+struct Light {
+  std::string name;
+  LightKind kind = LightKind::point;
+  Vec3 color;              ///< point, spot: radiant intensity W/sr on the axis; sun, constant_infinite: radiance W/(m^2 sr); infinite: factor on the image
+  Vec3 position;           ///< point, spot
+  Vec3 direction;          ///< spot: unit, the way it shines; sun: unit, towards the sun
+  float cos_total = 0;     ///< spot: cosine beyond which there is no light; sun: cosine of the disc's angular radius
+  float cos_falloff = 0;   ///< spot: cosine where the falloff starts
+  int image = -1;          ///< infinite: lat-long image in Scene::images (sky2 makes one of its own, with an empty file name)
+  Mat4 light_to_world;     ///< infinite: rotation part only
+  bool upper_hemisphere_only = false;
+};
+
+struct Object {
+  std::string name;
+  Mesh mesh;  ///< in world space: transformations are applied by the reader
+  int material = -1;
+  std::uint32_t id = 0;
+  bool camera_invisible = false;
+};
+
+/// Tone mapping, LuxCore's film.imagepipeline. See render/develop.h for the formulas.
+struct ToneMap {
+  enum class Kind { linear, reinhard02, autolinear } kind = Kind::linear;
+  float scale = 1;                                  ///< linear
+  float prescale = 1, postscale = 1.2f, burn = 3.75f;  ///< reinhard02
+  float gamma = 2.2f;
+};
+
+/// Everything a picture shows but its camera. Z up, metres, right-handed, linear Rec.709.
+struct Scene {
+  std::vector<Image> images;
+  std::vector<Texture> textures;
+  std::vector<Material> materials;
+  std::vector<Object> objects;
+  std::vector<Light> lights;
+  ToneMap tone_map;
+};
+
+/// Perspective camera with an optional thin lens.
+struct Camera {
+  Vec3d position{0.252, 0, 0};
+  Vec3d target{};
+  Vec3d up{0, 0, 1};
+  double fov_deg = 49;        ///< full angle over the longer image side, (0, 180)
+  double lens_radius_m = 0;   ///< 0: pinhole
+  double focus_distance_m = 0.252;  ///< along the viewing axis, > 0
+};
+
+}  // namespace ds

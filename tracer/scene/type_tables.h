@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace ds {
+
+/// An input that takes a constant or a texture. `width` is 1 (scalar) or 3 (colour).
+struct InputType {
+  std::string_view name;
+  int width;
+  float default_value;
+};
+
+/// A number or switch that is fixed when the scene is read.
+struct NumberType {
+  std::string_view name;
+  float default_value;
+};
+
+/// One kind of material or texture, made from the parameter list at the top of its kernel header
+/// (tracer/kernels/materials/NAME.h, tracer/kernels/textures/NAME.h), so that both sides read one text.
+struct NodeType {
+  std::string_view name;  ///< the SDL's `type`
+  std::span<const InputType> inputs;
+  std::span<const NumberType> numbers;
+};
+
+/// In the order of DS_MATERIALS and DS_TEXTURES in tracer/kernels/lists.h; Material::type and Texture::type index them.
+std::span<const NodeType> material_types();
+std::span<const NodeType> texture_types();
+
+/// Row of the type, or -1.
+int find_type(std::span<const NodeType> types, std::string_view name);
+/// Index of an input or number within its row, or -1.
+int find_input(const NodeType& type, std::string_view name);
+int find_number(const NodeType& type, std::string_view name);
+
+}  // namespace ds
