@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace ds {
@@ -14,37 +16,64 @@ struct ModelClass {
   std::string name;
   int parent = -1;                  ///< index of an earlier class, or -1 where the file says "0"
   std::vector<std::string> models;  ///< as written: a number ("1298") or a file name ("mug.ply")
+  std::vector<int> model_lines;     ///< as long as models: where each stands, from 1
 };
 
-/// A Princeton Shape Benchmark classification file.
+/// A Princeton Shape Benchmark classification file. The text, by lines (blank ones anywhere, CRLF
+/// or LF):
+///
+///   file  := "PSB 1" EOL  class_count model_count EOL  class*
+///   class := name parent count EOL  (model EOL){count}      parent: the name of an earlier class,
+///   or "0" for none
+///
+/// A name or model is one word. Names are unique, so that a parent's name is enough to tell it.
 struct Classification {
+  std::string file;                 ///< as given to the reader, for messages
   std::vector<ModelClass> classes;  ///< in file order, parents first
-  int model_count = 0;
+  int model_count = 0;              ///< in all classes together
 
   /// "vehicle/car": the names from the root down, joined by "/".
   std::string path(int class_index) const;
-  int leaf_count() const;  ///< classes that hold models
+  /// Classes that hold models (a few of the benchmark's are parents too).
+  int leaf_count() const;
 };
 
-/// Throws Error(asset), all findings with file:line: bad header, wrong counts, unknown parent, a class twice, a model in
-/// two leaf classes.
+/// Throws Error(asset), all findings with file:line: bad header, wrong counts, unknown parent, a
+/// class twice, a model twice (in one class or in two), a line that is neither a class nor a model.
 Classification parse_classification(std::string_view text, const std::string& name);
+/// `file` stands in messages as given. Throws Error(io) where it cannot be read.
 Classification read_classification(const std::filesystem::path& file);
 
-/// Class and split of a model by its file name ("m1298.off" and "1298.off" match "1298"; "mug.ply" matches "mug.ply"
-/// and "mug").
 struct ModelLabel {
-  std::string class_path, split;
+  std::string class_path;  ///< "vehicle/car"
+  std::string split;       ///< "train" or "test"
+  bool operator==(const ModelLabel&) const = default;
 };
+
+/// Class and split of a model by its file name.
 class Labels {
  public:
   Labels() = default;
-  /// Throws Error(asset) where one model stands in both. Either may be absent.
+  /// Throws Error(asset), all findings with file:line, where one model stands in both. Either may
+  /// be absent.
   Labels(const std::optional<Classification>& train, const std::optional<Classification>& test);
+
+  /// A class file's "mug.ply" means the file of that name, "mug" any file of that stem, "1298" also
+  /// "m1298.off" (the benchmark's own naming). Where several would do, the first in this order
+  /// counts: whole name, stem, number.
   std::optional<ModelLabel> find(std::string_view model_file_name) const;
+  /// Which of the entries `find` would use, below size().
+  std::optional<std::size_t> find_index(std::string_view model_file_name) const;
+  std::size_t size() const { return sorted_.size(); }
 
  private:
-  std::vector<std::pair<std::string, ModelLabel>> sorted_;
+  std::optional<std::size_t> index_of(std::string_view key) const;
+
+  std::vector<std::pair<std::string, ModelLabel>> sorted_;  // by key
 };
+
+/// The paths of all classes of both files and of their parents, sorted, each once.
+std::vector<std::string> class_paths(const std::optional<Classification>& train,
+                                     const std::optional<Classification>& test);
 
 }  // namespace ds

@@ -1,61 +1,84 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "manifests/camera_geometry.h"
+#include "tracer/base/hash.h"
+
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "tracer/base/hash.h"
-
 namespace ds {
+
+/// The manifest of a dataset's folder, three files under manifest/. No wall-clock time, no device,
+/// no path of this machine stands in them, so two machines that make the same pictures write the
+/// same bytes.
+///
+///   images.jsonl       one canonical JSON object a line and image, ordered by id (ImageRecord,
+///   same field names) dataset.json       one JSON object (DatasetRecord), indented for reading
+///   checksums.xxh128   "<32 hex digits>  <path>" a line: XXH3-128 of every file of the images and
+///   of the two above,
+///                      ordered by path; what `xxhsum -c manifest/checksums.xxh128` reads from
+///                      inside the folder
+///
+/// Canonical: keys sorted by bytes, no spaces, numbers the shortest that read back exactly, UTF-8
+/// unescaped. "format" in dataset.json counts up when a field changes its meaning; readers refuse
+/// what they do not know.
+inline constexpr int k_manifest_format = 1;
 
 /// One file of a dataset.
 struct FileRecord {
   std::string path;  ///< relative to the dataset's folder, "/" between parts
   std::string kind;  ///< "image", "mask", "depth"
   FileHashes hashes;
-  Hash128 pixels;    ///< of the decoded pixels: what two machines with different encoders agree on
+  Hash128 pixels;  ///< of the decoded pixels: what two machines with different encoders agree on
 };
 
-/// One image of a dataset: a line of manifest/images.jsonl. Holds no wall-clock time and no device.
+/// One image of a dataset: a line of manifest/images.jsonl.
 struct ImageRecord {
   std::string id, model, class_path, split, material, environment, view;
   std::vector<FileRecord> files;
-  std::uint64_t seed = 0;
+  std::uint64_t seed = 0;  ///< below 2^53, so that every JSON reader gets it exactly
   int spp = 0, width = 0, height = 0;
-  std::string math;                            ///< "strict" or "fast"
-  std::array<double, 9> intrinsics{};          ///< K, row-major, pixels; pixel centres at .5, origin top left
-  std::array<double, 16> camera_to_world{};    ///< row-major; OpenCV camera (x right, y down, z forward), world Z up, metres
+  std::string math;                          ///< "strict" or "fast"
+  std::array<double, 9> intrinsics{};        ///< as camera_intrinsics gives it
+  std::array<double, 16> camera_to_world{};  ///< as camera_pose gives it
   double lens_radius_m = 0, focus_distance_m = 0;
-  double tone_map_scale = 1;                   ///< the factor used (autolinear's differs from image to image)
+  double tone_map_scale = 1;  ///< the factor used (autolinear's differs from image to image)
   std::uint64_t rejected_samples = 0;
   Hash128 render_key, files_key;
-  std::array<Hash128, 5> parts{};              ///< model, material, environment, camera, engine
+  std::array<Hash128, 5> parts{};  ///< model, material, environment, camera, engine
 };
 
 struct DatasetRecord {
-  std::string name, licence, recipe_text;      ///< recipe_text: canonical, no path of this machine
+  std::string name, licence;
+  std::string recipe_text;  ///< canonical_recipe(): no path of this machine
   std::string dsbuild_version;
   std::uint64_t seed = 0;
   std::vector<std::string> class_paths;
   std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< "images", "models", "train", ...
-  std::vector<std::pair<std::string, std::string>> licences;  ///< asset -> licence text found beside it
+  std::vector<std::pair<std::string, std::string>>
+      licences;  ///< asset -> licence text found beside it
 };
 
-/// Canonical JSON: keys sorted, no spaces, shortest numbers that read back exactly, one line.
+/// The line without its line break. Numbers must be finite and texts UTF-8: Error(asset) otherwise.
 std::string to_json_line(const ImageRecord& image);
+/// Throws Error(asset) with file:line and the field for what is no such line.
 ImageRecord image_from_json_line(const std::string& line, const std::string& file, int line_number);
 
-/// Writes manifest/images.jsonl, manifest/dataset.json and manifest/checksums.xxh128 under `folder`, each atomically;
-/// images in the order of their ids. checksums is what `xxhsum -c` reads from inside `folder`.
+std::string to_json(const DatasetRecord& dataset);
+DatasetRecord dataset_from_json(const std::string& text, const std::string& file);
+
+/// Writes the three files, each atomically, the checksums last. Throws Error(io), and Error(asset)
+/// where two images have one id, two files one path, or a path is absolute, leaves the folder or
+/// holds a control character or backslash.
 void write_manifest(const std::filesystem::path& folder, const DatasetRecord& dataset,
                     const std::vector<ImageRecord>& images);
-/// Throws Error(asset) where it is missing or damaged.
+/// Throws Error(asset) where it is missing or damaged, all findings with file:line.
 std::vector<ImageRecord> read_images_manifest(const std::filesystem::path& folder);
-
-/// Intrinsics of a perspective camera of full angle fov_deg over the longer side, square pixels.
-std::array<double, 9> camera_intrinsics(double fov_deg, int width, int height);
+DatasetRecord read_dataset_manifest(const std::filesystem::path& folder);
 
 }  // namespace ds

@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "manifests/classification.h"
 #include "tracer/render/render.h"
 #include "tracer/scene/mesh.h"
 #include "tracer/scene/scene.h"
 
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace ds {
 
 enum class Assign { random, cycle, all };
+/// Whether a random choice is made once for a model, or for each of its views.
+enum class ChoosePer { model, view };
 
 /// Which files an image consists of. Depth is planar z.
 struct OutputSettings {
@@ -23,46 +26,82 @@ struct OutputSettings {
   std::optional<ToneMap> tone_map;  ///< overrides every environment's own
 };
 
-/// A recipe read, checked and with every default filled in. Paths are absolute.
+/// How the models found and the models that the class files list agree.
+struct ClassCoverage {
+  std::size_t listed = 0;    ///< models that the class files list
+  std::size_t missing = 0;   ///< of these, the ones that have no file
+  std::size_t unlisted = 0;  ///< model files that no class file lists
+};
+
+/// A recipe read, checked and with every default filled in. Paths are absolute. What each key
+/// means, its unit and default: recipes/README.md.
 struct Recipe {
   std::filesystem::path file;
   std::string name;
   std::uint64_t seed = 0;
   std::string licence;
-  std::vector<std::filesystem::path> models;        ///< sorted by file name
-  std::vector<std::filesystem::path> materials;     ///< material files, sorted by name
-  std::vector<std::filesystem::path> environments;  ///< folders, sorted by name
+  std::vector<std::filesystem::path> models;  ///< sorted by file name, which no two share
+  std::vector<std::filesystem::path>
+      materials;  ///< material files, sorted by name, which no two share
+  std::vector<std::filesystem::path> environments;  ///< folders, sorted by name, which no two share
   NormaliseOptions normalise;
   std::optional<std::filesystem::path> train_classes, test_classes;
-  double split_test_fraction = 0;  ///< used where there are no class files
+  Labels labels;                         ///< of both class files
+  std::vector<std::string> class_paths;  ///< of both class files, sorted
+  ClassCoverage coverage;
+  std::optional<double>
+      split_test_fraction;  ///< where there are no class files and a split is wanted
   Assign assign_materials = Assign::random;
+  ChoosePer materials_per = ChoosePer::model;
   Assign assign_environments = Assign::cycle;
-  std::vector<Camera> cameras;         ///< one a view
-  std::vector<std::string> view_names; ///< "0", "1", ...; as long as cameras
+  ChoosePer environments_per = ChoosePer::view;
+  std::vector<Camera> cameras;          ///< one a view
+  std::vector<std::string> view_names;  ///< "0", "1", ...; as long as cameras
   EngineSettings engine;
   OutputSettings outputs;
   bool keep_film = true;
+  /// Every key that has an effect and a value, "engine.spp" -> "64", as canonical_recipe writes
+  /// them.
+  std::vector<std::pair<std::string, std::string>> settings;
 };
 
-/// `overrides` are "key=value" texts of --set. Throws Error(recipe) with all findings, each "file:line:column: ...".
+/// `overrides` are "key=value" texts of --set, later ones win. Throws Error(recipe) with all
+/// findings, each "file:line:column: ..." or "--set key: ..."; class files' own findings are among
+/// them.
 Recipe read_recipe(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+
+/// The recipe as TOML lines "section.key = value" in the order of the reference, defaults and
+/// overrides filled in; no path of this machine (lists of file names stand in their place), so it
+/// is the same wherever the assets lie.
+std::string canonical_recipe(const Recipe& recipe);
 
 /// One image to make. A pure function of the recipe.
 struct ImageSpec {
-  std::string id;                ///< "human.ply/0": the path of the picture under images/, less its ending
-  std::string model_name;        ///< file name, "human.ply"
+  std::string id;  ///< "human.ply/0": the path of the picture under images/, less its ending
+  std::string model_name;  ///< file name, "human.ply"
   std::filesystem::path model_file, material_file, environment_folder;
   std::string material_name;     ///< file name less its ending
   std::string environment_name;  ///< folder name
   std::string view;
   Camera camera;
-  EngineSettings engine;         ///< with this image's own seed
-  std::string class_path;        ///< "vehicle/car", "" where unclassified
-  std::string split;             ///< "train", "test" or "" where there is none
+  EngineSettings engine;   ///< with this image's own seed, below 2^53
+  std::string class_path;  ///< "vehicle/car", "" where unclassified
+  std::string split;       ///< "train", "test" or "" where there is none
 };
 
-/// All images, ordered by model name, then view. Seeds, splits and random choices hash (recipe seed, model name, view),
-/// never an index, so adding a model changes no image of another.
+/// All images, ordered by model name, then view, then (with assign = all) material, then
+/// environment. Seeds, splits and random choices hash (recipe seed, model name, view), never an
+/// index, so adding a model changes no image of another. A random choice takes the candidate of the
+/// highest hash, so adding a material changes only the images that then show it. "cycle": view k
+/// gets candidate (k + hash(seed, model)) mod n, so all appear equally often.
+///
+/// The id is model/view, and -material and -environment behind it for each that is assigned "all".
+/// Throws Error(recipe) where two images would have one id, or an id's last part a dot.
 std::vector<ImageSpec> expand(const Recipe& recipe);
+
+/// The name an image and the manifest use for a material file ("red-plastic") or an environment
+/// folder ("studio").
+std::string material_name(const std::filesystem::path& file);
+std::string environment_name(const std::filesystem::path& folder);
 
 }  // namespace ds

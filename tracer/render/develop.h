@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tracer/base/hash.h"
+#include "tracer/render/render.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <vector>
-
-#include "tracer/base/hash.h"
-#include "tracer/render/render.h"
 
 namespace ds {
 
@@ -17,21 +17,40 @@ struct Picture {
   std::vector<std::uint8_t> pixels;
 };
 
-/// Tone mapping, gamma, rounding to 8 bits. The same bits on every machine (no libm transcendental).
+/// The factor that the tone map found for this film, for the manifest. With LuxCore's luminance
+/// Y = 0.212671 R + 0.715160 G + 0.072169 B it is:
+/// - linear: `scale`;
+/// - autolinear: 1.25 / mean(Y) * (118 / 255)^gamma, the mean over all pixels, of which those with
+///   Y <= 0 or not finite count as 0; 1 where the mean is 0;
+/// - reinhard02: 0.1 / exp(mean(log(max(Y, 1e-6)))).
+/// As in LuxCore's film/imagepipeline/plugins/tonemaps, but summed in double. The film holds at
+/// least one pixel.
+double tone_map_scale(const Film& film, const ToneMap& tone_map);
+
+/// round(255 * clamp(factor * rgb, 0, 1)^(1 / gamma)), halves up. `factor` is tone_map_scale; for
+/// reinhard02 it is s * postscale * (1 + y / burn^2) / (1 + y), where s is tone_map_scale and
+/// y = Y * s / prescale (burn <= 0: 1e5 stands for 1 / burn^2). In double and exact, where LuxCore
+/// looks gamma up in a table of 4096 steps. The same bits on every machine: no libm transcendental.
+/// NaN gives 0. gamma > 0.
 Picture develop(const Film& film, const ToneMap& tone_map);
 /// 0 and 255 only.
 Picture mask_picture(const Geometry& geometry);
 
-/// Encoded files with fixed settings and no timestamp. PNG: 8 bit, zlib level 6. EXR: float, ZIP, one channel "Z".
+/// Encoded files with fixed settings; no timestamp, host or version stands in them. PNG: 8 bit,
+/// zlib level 6, Paeth filter. EXR: float, ZIP, one channel "Z". The same library versions give the
+/// same bytes.
 std::vector<std::byte> encode_png(const Picture& picture);
 std::vector<std::byte> encode_depth_exr(const Geometry& geometry);
-/// A film as EXR: float32 R, G, B, ZIP; exact.
+/// A film as EXR: float32 R, G, B, ZIP; exact, with the count of rejected samples as an attribute.
 std::vector<std::byte> encode_film_exr(const Film& film);
-/// Throws Error(asset) for bytes that are no such file. `name` stands in the message.
+/// Throws Error(asset) for bytes that `encode_film_exr` did not write. `name` stands in the
+/// message.
 Film decode_film_exr(const std::vector<std::byte>& bytes, const std::string& name);
 
-/// XXH3-128 over "WxHxC type\n" and the decoded pixels, so that another zlib or EXR library changes only the file's
-/// hash. For PNG and EXR files of any content. Throws Error(asset) where the file cannot be decoded.
+/// XXH3-128 over "WxHxC type\n" and the decoded pixels, so that another zlib or EXR library changes
+/// only the file's hash. `type` is uint8, uint16, half or float, as stored. For PNG and EXR files
+/// of any content, 1 to 4 channels. Throws Error(asset) where the file cannot be decoded, Error(io)
+/// where it cannot be read.
 Hash128 pixel_hash(const std::filesystem::path& image_file);
 Hash128 pixel_hash(const std::vector<std::byte>& encoded, const std::string& name);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tracer/scene/scene.h"
+
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -8,26 +10,26 @@
 #include <string>
 #include <vector>
 
-#include "tracer/scene/scene.h"
-
 namespace ds {
 
 enum class MathMode { strict, fast };
 
-/// Everything about how a picture is traced that is not scene or camera. All of it is in the render key.
+/// Everything about how a picture is traced that is not scene or camera. All of it is in the render
+/// key.
 struct EngineSettings {
   int width = 512, height = 512;  ///< 1 .. 16384
   int spp = 64;                   ///< samples a pixel, 1 .. 2^24
-  int depth_total = 6;            ///< path vertices after the camera, >= 1 (LuxCore path.pathdepth.total)
+  int depth_total = 6;  ///< path vertices after the camera, >= 1 (LuxCore path.pathdepth.total)
   int depth_diffuse = 4, depth_glossy = 4, depth_specular = 6;
-  int roulette_depth = 3;         ///< first vertex at which Russian roulette may end a path
-  float roulette_cap = 0.5f;      ///< least survival probability, (0, 1]
-  float filter_width = 2.0f;      ///< Blackman-Harris, full width in pixels; 0: box of one pixel
+  int roulette_depth = 3;     ///< first vertex at which Russian roulette may end a path
+  float roulette_cap = 0.5f;  ///< least survival probability, (0, 1]
+  float filter_width = 3.0f;  ///< Blackman-Harris, full width in pixels; 0: box of one pixel
   std::uint64_t seed = 0;
   MathMode math = MathMode::strict;
 };
 
-/// Linear radiance, the mean over spp samples. Row 0 is the top, left to right, three floats a pixel.
+/// Linear radiance, the mean over spp samples. Row 0 is the top, left to right, three floats a
+/// pixel.
 struct Film {
   int width = 0, height = 0;
   std::vector<float> rgb;
@@ -38,21 +40,23 @@ struct Film {
 struct Geometry {
   int width = 0, height = 0;
   std::vector<std::uint8_t> mask;  ///< 255 where the model is the nearest thing hit, else 0
-  std::vector<float> depth;        ///< planar z along the viewing axis in metres; 0 where nothing is hit
+  std::vector<float> depth;  ///< planar z along the viewing axis in metres; 0 where nothing is hit
 };
 
 struct TraceProgress {
   std::uint64_t samples_done = 0, samples_total = 0;
 };
 
-/// How the tracer runs on one device; none of it may change a bit of a strict picture (tests hold it to that).
+/// How the tracer runs on one device; none of it may change a bit of a strict picture (tests hold
+/// it to that).
 struct TracerOptions {
-  std::string device;          ///< "" = first CPU device, else first of any; a number or part of a name selects
-  int lanes = 0;               ///< N: 0 = 8 on CPUs, 1 on GPUs; 1, 4, 8, 16
-  int work_group_size = 0;     ///< 0 = 8
-  bool full_program = false;   ///< compile every effect in, used or not
+  std::string
+      device;     ///< "" = first CPU device, else first of any; a number or part of a name selects
+  int lanes = 0;  ///< N: 0 = 8 on CPUs, 1 on GPUs; 1, 4, 8, 16
+  int work_group_size = 0;    ///< 0 = 8
+  bool full_program = false;  ///< compile every effect in, used or not
   bool high_quality_bvh = false;
-  std::string cache_folder;    ///< compiled programs; "" = the user's cache folder
+  std::string cache_folder;  ///< compiled programs; "" = the user's cache folder
 };
 
 /// Traces pictures on one device. Not safe from two threads at once; use one a thread.
@@ -64,11 +68,14 @@ class Tracer {
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
 
-  /// Packs the scene (images are loaded), builds its BVH and its program. Throws Error(asset) or Error(device).
+  /// Packs the scene (images are loaded), builds its BVH and its program. Throws Error(asset) or
+  /// Error(device).
   void set_scene(const Scene& scene);
-  /// Path-traces the scene set. Calls `progress` about twice a second; stops early with Error(cancelled) once `*stop`.
+  /// Path-traces the scene set. Calls `progress` about twice a second; stops early with
+  /// Error(cancelled) once `*stop`.
   Film trace(const Camera& camera, const EngineSettings& engine,
-             const std::function<void(const TraceProgress&)>& progress = {}, const std::atomic<bool>* stop = nullptr);
+             const std::function<void(const TraceProgress&)>& progress = {},
+             const std::atomic<bool>* stop = nullptr);
   Geometry trace_geometry(const Camera& camera, int width, int height);
   std::string device_name() const;
 
@@ -77,12 +84,14 @@ class Tracer {
   std::unique_ptr<State> state_;
 };
 
-/// Canonical text of the engine part of the render key: the settings, and the comment-stripped text of the program
-/// specialised for this scene and camera. Works without any OpenCL device.
-std::string canonical_engine(const Scene& scene, const Camera& camera, const EngineSettings& engine);
+/// Canonical text of the engine part of the render key: the settings, and the comment-stripped text
+/// of the program specialised for this scene and camera. Works without any OpenCL device.
+std::string canonical_engine(const Scene& scene, const Camera& camera,
+                             const EngineSettings& engine);
 /// Canonical text of the camera part.
 std::string canonical_camera(const Camera& camera);
-/// Bumped when host code that can move a pixel changes (mesh normalisation, packing, sky model, sampling tables).
+/// Bumped when host code that can move a pixel changes (mesh normalisation, packing, sky model,
+/// sampling tables).
 inline constexpr int k_host_render_version = 1;
 
 }  // namespace ds

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tracer/base/hash.h"
+#include "tracer/base/vec.h"
+
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
-
-#include "tracer/base/hash.h"
-#include "tracer/base/vec.h"
 
 namespace ds {
 
-/// An indexed triangle mesh. `normals` and `uvs` are empty or as long as `positions`. Positions are finite; every
-/// index is below positions.size(). Counter-clockwise seen from outside, where the source says so.
+/// An indexed triangle mesh. `normals` and `uvs` are empty or as long as `positions`. Positions are
+/// finite; every index is below positions.size(). Counter-clockwise seen from outside, where the
+/// source says so.
 struct Mesh {
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;  ///< unit length, or zero where none can be told
@@ -21,21 +23,55 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// What a reader and `mend` found in one model. Counts are of the file as read, before anything was removed.
+/// A coordinate beyond this (in the file's unit) counts as not finite: it is what a damaged file
+/// holds, and its square still fits a float.
+inline constexpr double k_farthest_coordinate = 1e18;
+
+/// What reading found in one model and what it mended. A triangle is counted as removed once, for
+/// the first reason in the order out_of_range, non_finite, zero_area, duplicate_faces.
 struct MeshReport {
-  std::uint64_t vertices = 0;
-  std::uint64_t faces = 0;
-  std::uint64_t triangles = 0;           ///< after triangulation, before removal
-  std::uint64_t n_gons = 0;              ///< faces of more than three corners
-  std::uint64_t zero_area = 0;           ///< triangles removed: no area
-  std::uint64_t duplicate_faces = 0;     ///< triangles removed: same three corners as an earlier one
-  std::uint64_t non_finite = 0;          ///< vertices with a NaN, infinite or absurdly far coordinate; their faces are removed
-  std::uint64_t out_of_range = 0;        ///< faces removed: an index at or above the vertex count
-  std::uint64_t unreferenced = 0;        ///< vertices no triangle uses, removed
-  std::uint64_t flipped = 0;             ///< triangles wound against their component's majority (reported, not changed)
+  std::uint64_t vertices = 0;     ///< in the file
+  std::uint64_t faces = 0;        ///< in the file
+  std::uint64_t n_gons = 0;       ///< faces of more than three corners
+  std::uint64_t short_faces = 0;  ///< faces of fewer than three corners, dropped
+  std::uint64_t triangles = 0;    ///< after triangulation (corners - 2 each), before removal
+  std::uint64_t out_of_range =
+      0;                         ///< faces removed: an index below 0 or not below the vertex count
+  std::uint64_t non_finite = 0;  ///< vertices with a NaN, infinite or too far coordinate, removed
+                                 ///< with all their faces
+  std::uint64_t bad_attributes =
+      0;  ///< kept vertices whose normal or uv is not finite; that is set to 0
+  std::uint64_t zero_area = 0;        ///< triangles removed: no area
+  std::uint64_t duplicate_faces = 0;  ///< triangles removed: the same three corner positions as an
+                                      ///< earlier one, whatever the order
+  std::uint64_t unreferenced =
+      0;                      ///< vertices no kept triangle uses, removed (non-finite included)
+  std::uint64_t flipped = 0;  ///< kept triangles wound against the majority of the surface they
+                              ///< belong to; reported, not changed
+  std::uint64_t triangles_kept = 0;
   bool has_normals = false;
   bool has_uvs = false;
-  std::uint64_t triangles_kept = 0;
+};
+
+/// The counts of MeshReport with their names, in the order a table should have them.
+struct MeshReportColumn {
+  const char* name;
+  std::uint64_t MeshReport::*count;
+};
+inline constexpr std::array k_mesh_report_columns{
+    MeshReportColumn{"vertices", &MeshReport::vertices},
+    MeshReportColumn{"faces", &MeshReport::faces},
+    MeshReportColumn{"n_gons", &MeshReport::n_gons},
+    MeshReportColumn{"short_faces", &MeshReport::short_faces},
+    MeshReportColumn{"triangles", &MeshReport::triangles},
+    MeshReportColumn{"out_of_range", &MeshReport::out_of_range},
+    MeshReportColumn{"non_finite", &MeshReport::non_finite},
+    MeshReportColumn{"bad_attributes", &MeshReport::bad_attributes},
+    MeshReportColumn{"zero_area", &MeshReport::zero_area},
+    MeshReportColumn{"duplicate_faces", &MeshReport::duplicate_faces},
+    MeshReportColumn{"unreferenced", &MeshReport::unreferenced},
+    MeshReportColumn{"flipped", &MeshReport::flipped},
+    MeshReportColumn{"triangles_kept", &MeshReport::triangles_kept},
 };
 
 /// A mesh as its file describes it, before normalisation.
@@ -44,10 +80,15 @@ struct Model {
   MeshReport report;
 };
 
-/// Reads PLY or OFF by the file's first bytes (not its name), triangulates, and mends what is listed in MeshReport.
-/// Throws Error(asset) with path and line (text) or byte offset (binary) for a file that is cut off, contradicts
-/// itself, or leaves no triangle. Never reserves memory on the word of a header alone.
+/// Reads PLY or OFF by the file's first bytes (not its name), triangulates, and mends what is
+/// listed in MeshReport. The order of vertices and triangles is the file's. No -0 in the result.
+/// Throws Error(asset) with path and line (text) or byte offset (binary) for a file that is cut
+/// off, contradicts itself, or leaves no triangle; Error(io) for one that cannot be read. Never
+/// reserves memory on the word of a header alone.
 Model read_model(const std::filesystem::path& file);
+
+/// The same for a file already in memory; `name` stands for the path in messages.
+Model parse_model(std::string_view bytes, const std::string& name);
 
 enum class UpAxis { y, z };
 enum class Centring { none, mass, box };  ///< mass: area-weighted centroid of the surface
@@ -55,20 +96,28 @@ enum class Normals { smooth, keep, flat };
 
 /// The thesis's normalisation; each step can be switched off. Lengths in metres.
 struct NormaliseOptions {
-  UpAxis up = UpAxis::y;              ///< y: (x, y, z) -> (x, -z, y), a rotation by +90 degrees about x
-  double size_m = 0.16;               ///< longest side of the bounding box; 0: keep the size
-  bool place_on_ground = true;        ///< move so that the least z is ground_z_m
-  double ground_z_m = -0.0574;
-  Centring centre = Centring::mass;   ///< of x and y
-  Normals normals = Normals::smooth;  ///< smooth: area-and-angle-weighted, split at creases
-  double crease_deg = 60.0;           ///< faces that meet at a larger angle keep an edge
+  UpAxis up = UpAxis::y;        ///< y: (x, y, z) -> (x, -z, y), a rotation by +90 degrees about x
+  double size_m = 0.16;         ///< longest side of the bounding box, finite; 0: keep the size
+  bool place_on_ground = true;  ///< move so that the least z is ground_z_m
+  double ground_z_m = -0.0574;  ///< finite
+  Centring centre = Centring::mass;  ///< of x and y, moved to 0
+  Normals normals = Normals::smooth;
+  double crease_deg = 60.0;  ///< in [0, 180]: faces that meet at a larger angle keep an edge
 };
 
-/// Arithmetic in double, results rounded once to float. Same bits everywhere.
+/// Turns, scales, places and shades a mesh of at least one triangle. Arithmetic in double with
+/// + - * / and sqrt only, results rounded once to float: the same bits on every machine. No -0.
+///
+/// Normals: `smooth` weights by area times corner angle, joins vertices of equal position, and
+/// splits a vertex where faces meet at more than crease_deg or where neighbours are wound against
+/// each other; `flat` gives each triangle its own; `keep` turns the stored ones and throws
+/// Error(asset) where the mesh has none. uvs are kept by all three. Triangles keep their order and
+/// corners.
 Mesh normalise(const Mesh& mesh, const NormaliseOptions& options);
 
-/// Hash of positions, normals, uvs and triangles: what a re-saved file keeps. Two files of the same geometry in
-/// different formats, headers, comments, number spellings of equal floats, have the same hash.
+/// Hash of positions, normals, uvs and triangles, bit by bit and in order: what a re-saved file
+/// keeps. Files of one geometry in different formats, headers, comments or spellings of equal
+/// numbers have the same hash once read.
 Hash128 geometry_hash(const Mesh& mesh);
 
 }  // namespace ds

@@ -20,14 +20,16 @@ struct NumberType {
 };
 
 /// One kind of material or texture, made from the parameter list at the top of its kernel header
-/// (tracer/kernels/materials/NAME.h, tracer/kernels/textures/NAME.h), so that both sides read one text.
+/// (tracer/kernels/materials/PREFIX.h, tracer/kernels/textures/PREFIX.h), so that both sides read
+/// one text.
 struct NodeType {
-  std::string_view name;  ///< the SDL's `type`
+  std::string_view name;           ///< the SDL's `type`
+  std::string_view kernel_prefix;  ///< of its kernel header and functions
   std::span<const InputType> inputs;
   std::span<const NumberType> numbers;
 };
 
-/// In the order of DS_MATERIALS and DS_TEXTURES in tracer/kernels/lists.h; Material::type and Texture::type index them.
+/// In the order of tracer/kernels/lists.h; Material::type and Texture::type index them.
 std::span<const NodeType> material_types();
 std::span<const NodeType> texture_types();
 

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/build/dataset_manifest.h"
+
+#include "tracer/base/files.h"
+
+#include <algorithm>
+#include <set>
+
+#ifndef DS_VERSION
+#  error "the build must define DS_VERSION"
+#endif
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* k_manifest_files[] = {"manifest/images.jsonl", "manifest/dataset.json",
+                                            "manifest/checksums.xxh128"};
+/// Names a licence of a folder's files may have.
+constexpr const char* k_licence_files[] = {"LICENSE", "LICENCE", "LICENSE.txt", "LICENCE.txt",
+                                           "COPYING"};
+
+std::optional<std::string> licence_beside(const fs::path& asset) {
+  std::error_code error;
+  const fs::path folder = fs::is_directory(asset, error) ? asset : asset.parent_path();
+  for (const fs::path& place : {folder, folder.parent_path()})
+    for (const char* name : k_licence_files)
+      if (fs::is_regular_file(place / name, error)) return read_text_file(place / name);
+  return std::nullopt;
+}
+
+void add_licences(DatasetRecord& record, const char* kind, const std::vector<fs::path>& assets) {
+  std::map<fs::path, std::optional<std::string>>
+      known;  // one look a folder: there may be thousands of models
+  std::error_code error;
+  for (const fs::path& asset : assets) {
+    const fs::path folder = fs::is_directory(asset, error) ? asset : asset.parent_path();
+    const auto [entry, is_new] = known.try_emplace(folder);
+    if (is_new) entry->second = licence_beside(asset);
+    if (entry->second)
+      record.licences.emplace_back(fmt::format("{}/{}", kind, asset.filename().string()),
+                                   *entry->second);
+  }
+}
+
+/// Hash of all the manifest is written from.
+Hash128 fingerprint(const DatasetRecord& dataset, const std::vector<ImageRecord>& images) {
+  std::string text = to_json(dataset);
+  for (const ImageRecord& image : images)
+    text += '\n' + to_json_line(image);
+  return hash_text(text);
+}
+
+bool manifest_stands(Dataset& dataset, Hash128 wanted,
+                     const std::map<std::string, PlacedFile>& placed) {
+  if (dataset.row.manifest != wanted) return false;
+  return std::all_of(
+      std::begin(k_manifest_files), std::end(k_manifest_files), [&](const char* path) {
+        const auto known = placed.find(path);
+        if (known == placed.end() || known->second.product != wanted) return false;
+        const fs::path file = dataset.folder / path;
+        const std::optional<FileStamp> stamp = stamp_of(file);
+        return stamp &&
+               (stamp == known->second.stamp || hash_file(file).xxh128 == known->second.object);
+      });
+}
+
+}  // namespace
+
+std::string program_version() {
+  return DS_VERSION;
+}
+
+ImageRecord image_record(const PlannedImage& image, Database& database) {
+  const ImageSpec& spec = image.spec;
+  ImageRecord record;
+  record.id = spec.id;
+  record.model = spec.model_name;
+  record.class_path = spec.class_path;
+  record.split = spec.split;
+  record.material = spec.material_name;
+  record.environment = spec.environment_name;
+  record.view = spec.view;
+  record.seed = spec.engine.seed;
+  record.spp = spec.engine.spp;
+  record.width = spec.engine.width;
+  record.height = spec.engine.height;
+  record.math = spec.engine.math == MathMode::strict ? "strict" : "fast";
+  record.intrinsics = camera_intrinsics(spec.camera.fov_deg, record.width, record.height);
+  record.camera_to_world = camera_pose(spec.camera);
+  record.lens_radius_m = spec.camera.lens_radius_m;
+  record.focus_distance_m = spec.camera.focus_distance_m;
+  record.render_key = image.keys.render;
+  record.files_key = image.keys.files;
+  std::copy_n(image.keys.parts.begin(), record.parts.size(), record.parts.begin());
+  for (const OutputFile& output : image.keys.outputs) {
+    const std::optional<Product> product = database.find_product(output.key);
+    if (!product) fail(ErrorKind::io, "{}: the database has no record of its making", output.path);
+    record.files.push_back({output.path,
+                            output.kind,
+                            {product->object, product->sha256, product->size_bytes},
+                            product->pixels});
+    if (output.kind == "image") {
+      record.tone_map_scale = product->tone_map_scale;
+      record.rejected_samples = product->rejected_samples;
+    }
+  }
+  return record;
+}
+
+DatasetRecord dataset_record(const Recipe& recipe, const std::vector<ImageRecord>& images) {
+  DatasetRecord record;
+  record.name = recipe.name;
+  record.licence = recipe.licence;
+  record.recipe_text = canonical_recipe(recipe);
+  record.dsbuild_version = program_version();
+  record.seed = recipe.seed;
+  std::set<std::string> models, classes;
+  std::map<std::string, std::uint64_t> splits;
+  for (const ImageRecord& image : images) {
+    models.insert(image.model);
+    if (!image.class_path.empty()) classes.insert(image.class_path);
+    if (!image.split.empty()) ++splits[image.split];
+  }
+  record.class_paths.assign(classes.begin(), classes.end());
+  record.counts = {{"images", images.size()}, {"models", models.size()}};
+  for (const auto& [split, count] : splits)
+    record.counts.emplace_back(split, count);
+  add_licences(record, "models", recipe.models);
+  add_licences(record, "materials", recipe.materials);
+  add_licences(record, "environments", recipe.environments);
+  return record;
+}
+
+bool update_manifest(Dataset& dataset, const std::vector<ImageRecord>& images) {
+  const DatasetRecord record = dataset_record(dataset.recipe, images);
+  const Hash128 wanted = fingerprint(record, images);
+  Database& database = *dataset.database;
+  if (manifest_stands(dataset, wanted, database.placed_files(dataset.row.id))) return false;
+  write_manifest(dataset.folder, record, images);
+  Transaction transaction(database.connection());
+  for (const char* path : k_manifest_files) {
+    const fs::path file = dataset.folder / path;
+    database.put_placed(dataset.row.id, {path, "", k_manifest_kind, wanted, hash_file(file).xxh128,
+                                         stamp_of(file)});
+  }
+  dataset.row.manifest = wanted;
+  database.set_manifest(dataset.row.id, wanted);
+  transaction.commit();
+  return true;
+}
+
+}  // namespace ds

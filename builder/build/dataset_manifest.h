@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/build/disk.h"
+#include "builder/build/plan.h"
+#include "manifests/manifest.h"
+
+#include <string>
+#include <vector>
+
+namespace ds {
+
+/// The version that manifests and `--version` name.
+std::string program_version();
+
+/// The manifest's line for an image whose files are in place. Throws Error(io) where the database
+/// does not know one.
+ImageRecord image_record(const PlannedImage& image, Database& database);
+
+/// What the manifest says of the dataset as a whole, for the images it lists.
+DatasetRecord dataset_record(const Recipe& recipe, const std::vector<ImageRecord>& images);
+
+/// Writes the manifest of these images, unless it stands there already as this would write it.
+/// Returns whether it wrote.
+bool update_manifest(Dataset& dataset, const std::vector<ImageRecord>& images);
+
+}  // namespace ds

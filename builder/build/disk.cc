@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/build/disk.h"
+
+#include "tracer/base/error.h"
+#include "tracer/base/files.h"
+
+#include <system_error>
+
+namespace ds {
+
+void RealDisk::write(const std::filesystem::path& file, std::span<const std::byte> bytes) {
+  write_file_atomic(file, bytes);
+}
+
+void RealDisk::link(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::error_code absent;
+  // rename() does nothing where both names are links to one file already, and would leave the
+  // temporary behind.
+  if (std::filesystem::equivalent(from, to, absent)) return;
+  link_file_atomic(from, to);
+}
+
+void RealDisk::remove(const std::filesystem::path& file) {
+  std::error_code error;
+  std::filesystem::remove(file, error);
+  if (error) fail(ErrorKind::io, "{}: cannot remove: {}", file.string(), error.message());
+}
+
+}  // namespace ds

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+namespace ds {
+
+/// The file operations a build depends on. Virtual so that a test can fill the disk, tear a file or
+/// pull the plug at any one of them.
+class Disk {
+ public:
+  virtual ~Disk() = default;
+  /// Replaces the file whole or not at all, and on the disk when it returns. Makes parent folders.
+  /// Throws Error(io).
+  virtual void write(const std::filesystem::path& file, std::span<const std::byte> bytes) = 0;
+  /// `to` becomes the same bytes as `from` (reflink, hard link or copy), whole or not at all.
+  /// Throws Error(io).
+  virtual void link(const std::filesystem::path& from, const std::filesystem::path& to) = 0;
+  /// No error where there is no such file. Throws Error(io).
+  virtual void remove(const std::filesystem::path& file) = 0;
+};
+
+/// The machine's own.
+class RealDisk : public Disk {
+ public:
+  void write(const std::filesystem::path& file, std::span<const std::byte> bytes) override;
+  void link(const std::filesystem::path& from, const std::filesystem::path& to) override;
+  void remove(const std::filesystem::path& file) override;
+};
+
+}  // namespace ds

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/build/execute.h"
+
+#include "builder/build/dataset_manifest.h"
+#include "tracer/base/error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <thread>
+#include <tuple>
+#include <unistd.h>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// How long to sleep where every image left is being made by other processes.
+constexpr std::chrono::milliseconds k_claim_poll{50};
+
+std::string host_name() {
+  char name[256] = {};
+  return ::gethostname(name, sizeof(name) - 1) == 0 ? name : "";
+}
+
+class Execution {
+ public:
+  Execution(Dataset& dataset, const Plan& plan, Inputs& inputs, const BuildOptions& options,
+            Disk& disk, const RendererFactory& factory, BuildObserver& observer,
+            const std::atomic<bool>& stop)
+      : dataset_(dataset),
+        plan_(plan),
+        options_(options),
+        disk_(disk),
+        observer_(observer),
+        stop_(stop),
+        maker_(dataset, inputs, plan.texts, disk, factory) {}
+
+  BuildResult run();
+
+ private:
+  using Queue = std::deque<const PlannedImage*>;
+
+  Queue sort_images();
+  void make_all(Queue queue);
+  bool make_one(const PlannedImage& image);
+  void fail_image(const PlannedImage& image, const std::string& why);
+  void collect_failures();
+  void finish();
+  void remove_left_over();
+  void log();
+  /// Whether no further image is made.
+  bool cut_short() const {
+    return stop_ || disk_failed_ || (result_.failed > 0 && !options_.keep_going);
+  }
+
+  Dataset& dataset_;
+  const Plan& plan_;
+  BuildOptions options_;
+  Disk& disk_;
+  BuildObserver& observer_;
+  const std::atomic<bool>& stop_;
+  ImageMaker maker_;
+  BuildResult result_;
+  std::map<std::string, std::vector<std::string>> failures_;  ///< image ids by what went wrong
+  std::set<std::string> unfinished_;                          ///< ids
+  bool disk_failed_ = false;
+  std::int64_t build_number_ = 0;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void Execution::fail_image(const PlannedImage& image, const std::string& why) {
+  ++result_.failed;
+  failures_[why].push_back(image.spec.id);
+  observer_.image_failed(image, why);
+}
+
+/// Counts what needs nothing, enters failures, and returns what is to be made, images of one scene
+/// together.
+Execution::Queue Execution::sort_images() {
+  Queue queue;
+  for (const PlannedImage& image : plan_.images) {
+    if (image.error) {
+      unfinished_.insert(image.spec.id);
+      fail_image(image, image.error->what());
+    } else if (image.stale()) {
+      unfinished_.insert(image.spec.id);
+      queue.push_back(&image);
+    } else {
+      ++result_.reused;
+      if (image.record) maker_.record(image);
+    }
+  }
+  std::stable_sort(queue.begin(), queue.end(), [](const PlannedImage* a, const PlannedImage* b) {
+    const auto scene = [](const ImageSpec& spec) {
+      return std::tie(spec.model_file, spec.material_file, spec.environment_folder);
+    };
+    return scene(a->spec) < scene(b->spec);
+  });
+  return queue;
+}
+
+/// False where another process is making the image now.
+bool Execution::make_one(const PlannedImage& image) {
+  const auto claim = dataset_.claims->try_image(image.keys.render);
+  if (!claim) return false;
+  observer_.image_started(image);
+  try {
+    const ImageWork work = maker_.make(
+        image, options_.force,
+        [&](const TraceProgress& progress) { observer_.progress(image, progress); }, stop_);
+    ++result_.built;
+    result_.traced += work.traced ? 1U : 0U;
+    result_.developed += work.developed ? 1U : 0U;
+    result_.traced_samples += work.samples;
+    unfinished_.erase(image.spec.id);
+    observer_.image_done(image, work);
+  } catch (const DamagedDatabase&) {
+    throw;
+  } catch (const Error& error) {
+    // A disk that refuses one image refuses the rest: tracing them would be for nothing.
+    disk_failed_ = disk_failed_ || error.kind() == ErrorKind::io;
+    if (error.kind() != ErrorKind::cancelled) fail_image(image, error.what());
+  }
+  return true;
+}
+
+void Execution::make_all(Queue queue) {
+  std::uint64_t samples = 0;
+  for (const PlannedImage* image : queue)
+    samples += image->trace_film ? image->samples() : 0;
+  observer_.started(queue.size(), samples);
+  std::size_t put_back = 0;  // images in a row that others are making
+  while (!queue.empty() && !cut_short()) {
+    const PlannedImage* image = queue.front();
+    queue.pop_front();
+    if (make_one(*image)) {
+      put_back = 0;
+      continue;
+    }
+    queue.push_back(image);
+    if (++put_back >= queue.size()) std::this_thread::sleep_for(k_claim_poll);
+  }
+  result_.stopped = stop_ && !queue.empty();
+}
+
+void Execution::collect_failures() {
+  for (const auto& [why, ids] : failures_) {
+    const std::string what =
+        ids.size() == 1 ? ids.front() : fmt::format("{} images, {} ...", ids.size(), ids.front());
+    result_.failures.emplace_back(what, why);
+  }
+}
+
+void Execution::remove_left_over() {
+  // Files of failed images are older than the recipe. They go too: a folder holds what its manifest
+  // lists.
+  Database& database = *dataset_.database;
+  std::set<fs::path> folders;
+  for (const std::string& path : plan_.to_remove) {
+    disk_.remove(dataset_.folder / path);
+    folders.insert((dataset_.folder / path).parent_path());
+  }
+  std::error_code not_empty;
+  for (const fs::path& folder : folders)
+    fs::remove(folder, not_empty);
+  std::set<std::string> wanted;
+  for (const PlannedImage& image : plan_.images)
+    wanted.insert(image.spec.id);
+  Transaction transaction(database.connection());
+  for (const std::string& path : plan_.to_remove)
+    database.remove_placed(dataset_.row.id, path);
+  for (const auto& [id, parts] : database.images(dataset_.row.id))
+    if (!wanted.contains(id)) database.remove_image(dataset_.row.id, id);
+  transaction.commit();
+}
+
+void Execution::finish() {
+  maker_.remember_stamps();
+  if (!cut_short()) remove_left_over();
+  std::vector<ImageRecord> records;
+  for (const PlannedImage& image : plan_.images) {
+    if (!unfinished_.contains(image.spec.id))
+      records.push_back(image_record(image, *dataset_.database));
+  }
+  update_manifest(dataset_, records);
+}
+
+void Execution::log() {
+  result_.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const char* outcome = result_.stopped ? "stopped" : result_.failures.empty() ? "done" : "failed";
+  dataset_.database->update_build({build_number_, "", "", result_.device, outcome, result_.images,
+                                   result_.built, result_.reused, result_.failed,
+                                   result_.traced_samples, result_.seconds});
+}
+
+BuildResult Execution::run() {
+  build_number_ = dataset_.database->begin_build(dataset_.row.id, host_name());
+  result_.images = plan_.images.size();
+  make_all(sort_images());
+  collect_failures();
+  result_.not_reached = result_.images - result_.built - result_.reused - result_.failed;
+  result_.device = maker_.device();
+  try {
+    finish();
+    log();
+  } catch (const DamagedDatabase&) {
+    throw;
+  } catch (const Error& error) {
+    // The images made are recorded; the caller is to learn their counts too.
+    result_.failures.emplace_back("the manifest", error.what());
+  }
+  return result_;
+}
+
+}  // namespace
+
+BuildResult execute(Dataset& dataset, const Plan& plan, Inputs& inputs, const BuildOptions& options,
+                    Disk& disk, const RendererFactory& factory, BuildObserver& observer,
+                    const std::atomic<bool>& stop) {
+  return Execution(dataset, plan, inputs, options, disk, factory, observer, stop).run();
+}
+
+}  // namespace ds

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/build/image_maker.h"
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ds {
+
+struct BuildOptions {
+  bool keep_going = false;  ///< make the images that can be made where others fail
+  bool force = false;       ///< trace every image again
+};
+
+/// Counts are of images; images = built + reused + failed + not_reached.
+struct BuildResult {
+  std::uint64_t images = 0;
+  std::uint64_t built = 0;   ///< at least one file was put into the folder
+  std::uint64_t reused = 0;  ///< every file was there
+  std::uint64_t failed = 0;
+  std::uint64_t not_reached = 0;     ///< stopped before, by the user or by another's failure
+  std::uint64_t traced = 0;          ///< of the built: something was traced
+  std::uint64_t developed = 0;       ///< of the built: a picture was made from a film
+  std::uint64_t traced_samples = 0;  ///< camera samples, over all pixels
+  double seconds = 0;
+  std::string device;    ///< empty where nothing was traced
+  bool stopped = false;  ///< by the user
+  std::vector<std::pair<std::string, std::string>>
+      failures;  ///< what ("human.ply/0", "14 images, ..."), why
+
+  bool ok() const { return !stopped && failures.empty(); }
+};
+
+/// Told what goes on, from the thread that called `execute`.
+class BuildObserver {
+ public:
+  virtual ~BuildObserver() = default;
+  /// `images` to make, `samples` to trace for them.
+  virtual void started(std::uint64_t /*images*/, std::uint64_t /*samples*/) {}
+  virtual void image_started(const PlannedImage& /*image*/) {}
+  virtual void progress(const PlannedImage& /*image*/, const TraceProgress& /*progress*/) {}
+  virtual void image_done(const PlannedImage& /*image*/, const ImageWork& /*work*/) {}
+  virtual void image_failed(const PlannedImage& /*image*/, const std::string& /*why*/) {}
+};
+
+/// Makes what the plan found stale: images of one scene one after another, so that a scene is
+/// uploaded once. An image another process is making now is left for last and then found in the
+/// store. Ends early when `stop` is set: what is finished is recorded, the image under way is not.
+/// Afterwards the manifest lists exactly the images whose files are in place, and (where the build
+/// was not cut short) files that no image names any more are removed. Throws only for what concerns
+/// the dataset as a whole.
+BuildResult execute(Dataset& dataset, const Plan& plan, Inputs& inputs, const BuildOptions& options,
+                    Disk& disk, const RendererFactory& factory, BuildObserver& observer,
+                    const std::atomic<bool>& stop);
+
+}  // namespace ds

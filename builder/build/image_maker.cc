@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/build/image_maker.h"
+
+#include "tracer/base/error.h"
+#include "tracer/render/develop.h"
+
+#include <chrono>
+#include <utility>
+
+namespace ds {
+
+/// What is known while one image is made.
+struct ImageMaker::Work {
+  const PlannedImage& image;
+  bool force;
+  const std::function<void(const TraceProgress&)>& progress;
+  const std::atomic<bool>& stop;
+  ImageWork done;
+  std::vector<MadeProduct> made;
+  std::optional<Geometry> geometry;
+  TraceRun geometry_run;
+};
+
+namespace {
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+Product product_of(Hash128 key, const std::string& kind) {
+  Product product;
+  product.key = key;
+  product.kind = kind;
+  return product;
+}
+
+}  // namespace
+
+ImageMaker::ImageMaker(Dataset& dataset, Inputs& inputs, const TextSet& texts, Disk& disk,
+                       RendererFactory factory)
+    : dataset_(dataset), inputs_(inputs), texts_(texts), disk_(disk), factory_(std::move(factory)) {
+  DS_ASSERT(dataset_.store != nullptr);
+}
+
+Renderer& ImageMaker::renderer() {
+  if (!renderer_) renderer_ = factory_();
+  return *renderer_;
+}
+
+std::optional<Product> ImageMaker::find_whole(Hash128 key) {
+  std::optional<Product> product = dataset_.database->find_product(key);
+  // The row of a lost object stays: files placed of it before are still what it says.
+  if (product && !dataset_.store->intact(product->object)) return std::nullopt;
+  return product;
+}
+
+Product ImageMaker::keep(Work& work, Product product, const std::vector<std::byte>& bytes,
+                         const TraceRun& run) {
+  product.object = dataset_.store->put(bytes);
+  product.size_bytes = bytes.size();
+  product.sha256 = sha256_hex(bytes);
+  product.pixels = pixel_hash(bytes, work.image.spec.id + " " + product.kind);
+  work.made.push_back({product, run});
+  return product;
+}
+
+Film ImageMaker::trace_film(Work& work) {
+  const Stopwatch watch;
+  Film film = renderer().trace(work.image.spec, work.progress, work.stop);
+  work.done.traced = true;
+  work.done.samples += work.image.samples();
+  if (dataset_.recipe.keep_film) {
+    Product product = product_of(work.image.keys.render, "film");
+    product.rejected_samples = film.rejected_samples;
+    keep(work, std::move(product), encode_film_exr(film), {watch.seconds(), renderer().device()});
+  }
+  return film;
+}
+
+Film ImageMaker::obtain_film(Work& work) {
+  const Hash128 key = work.image.keys.render;
+  const std::optional<Product> known =
+      work.force ? std::nullopt : dataset_.database->find_product(key);
+  const auto bytes = known ? dataset_.store->get(known->object) : std::nullopt;
+  if (!bytes) return trace_film(work);
+  Film film = decode_film_exr(*bytes, "film of " + work.image.spec.id);
+  film.rejected_samples = known->rejected_samples;
+  return film;
+}
+
+Product ImageMaker::develop_image(Work& work, const OutputFile& output) {
+  const Film film = obtain_film(work);
+  const ToneMap& tone_map =
+      tone_map_of(dataset_.recipe, inputs_.environment(work.image.spec.environment_folder));
+  const Stopwatch watch;
+  const Picture picture = develop(film, tone_map);
+  work.done.developed = true;
+  Product product = product_of(output.key, output.kind);
+  product.tone_map_scale = tone_map_scale(film, tone_map);
+  product.rejected_samples = film.rejected_samples;
+  const std::vector<std::byte> bytes = encode_png(picture);
+  return keep(work, std::move(product), bytes, {watch.seconds(), ""});
+}
+
+Product ImageMaker::make_geometry_file(Work& work, const OutputFile& output) {
+  if (!work.geometry) {
+    const Stopwatch watch;
+    work.geometry = renderer().trace_geometry(work.image.spec);
+    work.geometry_run = {watch.seconds(), renderer().device()};
+    work.done.traced = true;
+  }
+  const std::vector<std::byte> bytes = output.kind == "mask"
+                                           ? encode_png(mask_picture(*work.geometry))
+                                           : encode_depth_exr(*work.geometry);
+  return keep(work, product_of(output.key, output.kind), bytes, work.geometry_run);
+}
+
+Product ImageMaker::obtain(Work& work, const OutputFile& output) {
+  if (!work.force)
+    if (const auto known = find_whole(output.key)) return *known;
+  return output.kind == "image" ? develop_image(work, output) : make_geometry_file(work, output);
+}
+
+void ImageMaker::commit(const PlannedImage& image, const std::vector<MadeProduct>& made,
+                        const std::vector<PlacedFile>& placed) {
+  Database& database = *dataset_.database;
+  Transaction transaction(database.connection());
+  for (const auto& [product, run] : made)
+    database.put_product(product, run);
+  for (const Hash128 part : image.keys.parts)
+    texts_.visit(part,
+                 [&](Hash128 hash, const std::string& text) { database.put_text(hash, text); });
+  database.put_image(dataset_.row.id, image.spec.id, image.keys.parts);
+  for (const PlacedFile& file : placed)
+    database.put_placed(dataset_.row.id, file);
+  for (const PlacedFile& file : stamped_)
+    database.put_placed(dataset_.row.id, file);
+  transaction.commit();
+  stamped_.clear();
+}
+
+void ImageMaker::place(const PlacedFile& file) {
+  const std::filesystem::path target = dataset_.folder / file.path;
+  dataset_.store->place(file.object, target);
+  PlacedFile stamped = file;
+  stamped.stamp = stamp_of(target);
+  stamped_.push_back(std::move(stamped));
+}
+
+ImageWork ImageMaker::make(const PlannedImage& image, bool force,
+                           const std::function<void(const TraceProgress&)>& progress,
+                           const std::atomic<bool>& stop) {
+  Work work{image, force, progress, stop, {}, {}, {}, {}};
+  std::vector<PlacedFile> placed;
+  for (const PlannedFile& file : image.files) {
+    if (file.state == FileState::in_place) continue;
+    const Product product = obtain(work, file.output);
+    placed.push_back({file.output.path, image.spec.id, file.output.kind, file.output.key,
+                      product.object, std::nullopt});
+  }
+  if (!work.made.empty()) dataset_.store->put_record(to_record(work.made));
+  commit(image, work.made, placed);
+  for (const PlacedFile& file : placed)
+    place(file);
+  return work.done;
+}
+
+void ImageMaker::record(const PlannedImage& image) {
+  commit(image, {}, {});
+}
+
+void ImageMaker::remember_stamps() {
+  if (stamped_.empty()) return;
+  Transaction transaction(dataset_.database->connection());
+  for (const PlacedFile& file : stamped_)
+    dataset_.database->put_placed(dataset_.row.id, file);
+  transaction.commit();
+  stamped_.clear();
+}
+
+}  // namespace ds

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/build/made_record.h"
+#include "builder/build/plan.h"
+#include "builder/build/renderer.h"
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace ds {
+
+/// What one image's making took.
+struct ImageWork {
+  bool traced = false;     ///< film or geometry
+  bool developed = false;  ///< a picture was made from a film
+  std::uint64_t samples = 0;
+};
+
+/// Makes one image at a time: finds what is in the store, traces and develops what is not, records
+/// all of it in one transaction, then puts the files into the dataset's folder. A crash at any
+/// moment leaves nothing that the next plan takes for whole: objects come before the rows that name
+/// them, rows before the files they account for.
+class ImageMaker {
+ public:
+  /// All must outlive this.
+  ImageMaker(Dataset& dataset, Inputs& inputs, const TextSet& texts, Disk& disk,
+             RendererFactory factory);
+
+  /// Throws Error for anything that stops this image; another image may go well.
+  ImageWork make(const PlannedImage& image, bool force,
+                 const std::function<void(const TraceProgress&)>& progress,
+                 const std::atomic<bool>& stop);
+  /// Enters an image whose files need nothing.
+  void record(const PlannedImage& image);
+  /// Writes the stamps of the files placed since the last call; they ride along with the next image
+  /// otherwise.
+  void remember_stamps();
+  /// Of the renderer; empty before anything was traced.
+  std::string device() const { return renderer_ ? renderer_->device() : ""; }
+
+ private:
+  struct Work;
+  Product obtain(Work& work, const OutputFile& output);
+  std::optional<Product> find_whole(Hash128 key);
+  Film obtain_film(Work& work);
+  Film trace_film(Work& work);
+  Product develop_image(Work& work, const OutputFile& output);
+  Product make_geometry_file(Work& work, const OutputFile& output);
+  Product keep(Work& work, Product product, const std::vector<std::byte>& bytes,
+               const TraceRun& run);
+  void commit(const PlannedImage& image, const std::vector<MadeProduct>& made,
+              const std::vector<PlacedFile>& placed);
+  void place(const PlacedFile& file);
+  Renderer& renderer();
+
+  Dataset& dataset_;
+  Inputs& inputs_;
+  const TextSet& texts_;
+  Disk& disk_;
+  RendererFactory factory_;
+  std::unique_ptr<Renderer> renderer_;
+  std::vector<PlacedFile> stamped_;
+};
+
+}  // namespace ds

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/db/database.h"
+#include "tracer/base/error.h"
+#include "tracer/scene/mesh.h"
+#include "tracer/scene/scene.h"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ds {
+
+/// The files a recipe names, each read once. What was hashed before is known by its stamp (size,
+/// time, inode), so that looking at thousands of unchanged models reads none of them. A file that
+/// cannot be read fails the same way each time it is asked for.
+class Inputs {
+ public:
+  /// The database must outlive this.
+  explicit Inputs(Database& database) : database_(database) {}
+
+  /// geometry_hash of the model as read, before normalisation. Throws what `read_model` throws.
+  Hash128 model_geometry(const std::filesystem::path& file);
+  /// Reads and normalises. Throws Error(asset) where the file is no longer the one `model_geometry`
+  /// saw.
+  Mesh model_mesh(const std::filesystem::path& file, const NormaliseOptions& options);
+  const Scene& material(const std::filesystem::path& file);
+  const Scene& environment(const std::filesystem::path& folder);
+
+  /// Writes the hashes found since the last call into the database.
+  void remember();
+
+ private:
+  template <typename T>
+  struct Read {
+    std::optional<T> value;
+    std::optional<Error> error;
+  };
+  template <typename T, typename Reader>
+  const T& once(std::map<std::filesystem::path, Read<T>>& known, const std::filesystem::path& path,
+                const Reader& reader);
+  Hash128 read_geometry(const std::filesystem::path& file);
+
+  struct NewHash {
+    std::filesystem::path file;
+    std::optional<FileStamp> stamp;
+    Hash128 content, geometry;
+  };
+
+  Database& database_;
+  std::map<std::filesystem::path, Read<Hash128>> geometries_;
+  std::map<std::filesystem::path, Read<Scene>> materials_, environments_;
+  std::vector<NewHash> new_hashes_;
+};
+
+}  // namespace ds

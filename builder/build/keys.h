@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/build/inputs.h"
+#include "builder/build/texts.h"
+#include "builder/db/database.h"
+#include "builder/recipe/recipe.h"
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ds {
+
+/// One file of an image, and the key of what it is made from.
+struct OutputFile {
+  std::string kind;  ///< "image", "mask", "depth"
+  std::string path;  ///< relative to the dataset's folder: "images/human.ply/0.mask.png"
+  Hash128 key;
+};
+
+/// The keys of one image: one for each stage, so that a change costs only the stages after it.
+///   render    what is traced: hash of the five parts
+///   geometry  what mask and depth are traced from: model, normalisation, the environment's meshes,
+///   camera less its lens,
+///             size
+///   outputs   each file: render or geometry key, tone map, encoding
+struct ImageKeys {
+  PartHashes parts;  ///< of folded texts; the sixth, "files", is not in `render`
+  Hash128 render, geometry;
+  Hash128 files;  ///< of all outputs
+  std::vector<OutputFile> outputs;
+};
+
+/// Makes keys, and keeps the texts they are hashes of. Needs no OpenCL device. Everything it refers
+/// to must outlive it.
+class KeyMaker {
+ public:
+  KeyMaker(const Recipe& recipe, Inputs& inputs, TextSet& texts)
+      : recipe_(recipe), inputs_(inputs), texts_(texts) {}
+
+  /// Throws where a file of the image cannot be read.
+  ImageKeys keys(const ImageSpec& image);
+
+ private:
+  using SceneName = std::pair<std::filesystem::path, std::filesystem::path>;
+
+  const Scene& scene_without_model(const ImageSpec& image);
+  Hash128 geometry_key(const ImageSpec& image, Hash128 model_part);
+  const std::string& environment_shape(const std::filesystem::path& folder);
+  std::vector<OutputFile> outputs(const ImageSpec& image, const ImageKeys& keys,
+                                  const ToneMap& tone_map) const;
+
+  const Recipe& recipe_;
+  Inputs& inputs_;
+  TextSet& texts_;
+  std::map<SceneName, Scene> scenes_;
+  std::map<std::filesystem::path, Hash128> material_parts_, environment_parts_;
+  std::map<std::filesystem::path, std::string> environment_shapes_;
+};
+
+/// The tone map an image is developed with: the recipe's, else its environment's.
+const ToneMap& tone_map_of(const Recipe& recipe, const Scene& environment);
+
+/// Canonical text of the model part: geometry and the normalisation steps that are switched on.
+std::string canonical_model(Hash128 geometry, const NormaliseOptions& options);
+
+/// Path of an output of an image: "images/human.ply/0.png".
+std::string output_path(const std::string& image_id, const std::string& kind);
+
+}  // namespace ds

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/build/plan.h"
+
+#include <algorithm>
+#include <set>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Reasons named in full; what follows is counted.
+constexpr std::size_t k_most_changes = 4;
+
+class Planner {
+ public:
+  Planner(Dataset& dataset, TextSet& texts, bool force)
+      : dataset_(dataset),
+        database_(*dataset.database),
+        texts_(texts),
+        force_(force),
+        known_(database_.images(dataset.row.id)),
+        placed_(database_.placed_files(dataset.row.id)) {}
+
+  void plan(PlannedImage& image);
+  std::vector<std::string> left_over(const std::vector<PlannedImage>& images) const;
+  void remember_stamps();
+
+ private:
+  bool in_store(Hash128 key);
+  /// Empty where the file is in place, else why it is not.
+  std::string why_not_in_place(const PlannedImage& image, const OutputFile& output);
+  void plan_files(PlannedImage& image, bool changed);
+  void add_changes(PlannedImage& image, const PartHashes& before);
+
+  Dataset& dataset_;
+  Database& database_;
+  TextSet& texts_;
+  bool force_;
+  std::map<std::string, PartHashes> known_;
+  std::map<std::string, PlacedFile> placed_;
+  std::vector<PlacedFile> restamped_;
+};
+
+bool Planner::in_store(Hash128 key) {
+  if (!dataset_.store) return false;
+  const std::optional<Product> product = database_.find_product(key);
+  return product && dataset_.store->has(product->object);
+}
+
+std::string Planner::why_not_in_place(const PlannedImage& image, const OutputFile& output) {
+  const auto found = placed_.find(output.path);
+  if (found == placed_.end() || found->second.image != image.spec.id)
+    return output.path + " was never made";
+  PlacedFile& placed = found->second;
+  if (placed.product != output.key) return output.path + " is of an older key";
+  const fs::path file = dataset_.folder / output.path;
+  const std::optional<FileStamp> stamp = stamp_of(file);
+  if (!stamp) return output.path + " is missing";
+  if (placed.stamp == stamp) return "";
+  if (hash_file(file).xxh128 != placed.object) return output.path + " was changed on the disk";
+  placed.stamp = stamp;
+  restamped_.push_back(placed);
+  return "";
+}
+
+void Planner::add_changes(PlannedImage& image, const PartHashes& before) {
+  const auto changes = changes_since(image, before, texts_, database_);
+  for (std::size_t i = 0; i < std::min(changes.size(), k_most_changes); ++i)
+    image.reasons.push_back(
+        fmt::format("{} changed: {}", changes[i].first, to_string(changes[i].second)));
+  if (changes.size() > k_most_changes)
+    image.reasons.push_back(fmt::format("and {} more changes", changes.size() - k_most_changes));
+}
+
+void Planner::plan_files(PlannedImage& image, bool changed) {
+  for (const OutputFile& output : image.keys.outputs) {
+    PlannedFile file{output, FileState::in_place};
+    const std::string reason = why_not_in_place(image, output);
+    if (!reason.empty() || force_) {
+      // Where a property changed, that is the reason, and the files of older keys follow from it.
+      if (!reason.empty() && !changed) image.reasons.push_back(reason);
+      file.state = !force_ && in_store(output.key) ? FileState::in_store : FileState::to_make;
+    }
+    if (file.state == FileState::to_make) {
+      if (output.kind != "image")
+        image.trace_geometry = true;
+      else if (force_ || !in_store(image.keys.render))
+        image.trace_film = true;
+    }
+    image.files.push_back(std::move(file));
+  }
+}
+
+void Planner::plan(PlannedImage& image) {
+  const auto known = known_.find(image.spec.id);
+  const bool changed = known != known_.end() && known->second != image.keys.parts;
+  if (force_) image.reasons.emplace_back("forced");
+  if (known == known_.end()) image.reasons.emplace_back("new");
+  if (changed) add_changes(image, known->second);
+  plan_files(image, changed || known == known_.end());
+  const auto in_place = [](const PlannedFile& file) { return file.state == FileState::in_place; };
+  if (std::all_of(image.files.begin(), image.files.end(), in_place)) {
+    // Only the record is behind: an output was switched off, or a database was lost.
+    image.record = !image.reasons.empty();
+    image.reasons.clear();
+  }
+  const bool lost_film =
+      known != known_.end() && known->second == image.keys.parts && image.trace_film && !force_;
+  if (lost_film) image.reasons.emplace_back("its film is not in the store");
+}
+
+std::vector<std::string> Planner::left_over(const std::vector<PlannedImage>& images) const {
+  std::set<std::string> wanted;
+  for (const PlannedImage& image : images)
+    for (const PlannedFile& file : image.files)
+      wanted.insert(file.output.path);
+  std::vector<std::string> paths;
+  for (const auto& [path, placed] : placed_)
+    if (placed.kind != k_manifest_kind && !wanted.contains(path)) paths.push_back(path);
+  return paths;
+}
+
+void Planner::remember_stamps() {
+  if (restamped_.empty()) return;
+  Transaction transaction(database_.connection());
+  for (const PlacedFile& file : restamped_)
+    database_.put_placed(dataset_.row.id, file);
+  transaction.commit();
+}
+
+}  // namespace
+
+std::uint64_t PlannedImage::samples() const {
+  return static_cast<std::uint64_t>(spec.engine.width) *
+         static_cast<std::uint64_t>(spec.engine.height) *
+         static_cast<std::uint64_t>(spec.engine.spp);
+}
+
+Plan make_plan(Dataset& dataset, Inputs& inputs, bool force) {
+  Plan plan;
+  KeyMaker keys(dataset.recipe, inputs, plan.texts);
+  Planner planner(dataset, plan.texts, force);
+  for (ImageSpec& spec : expand(dataset.recipe)) {
+    PlannedImage image;
+    image.spec = std::move(spec);
+    try {
+      image.keys = keys.keys(image.spec);
+      planner.plan(image);
+    } catch (const DamagedDatabase&) {
+      throw;
+    } catch (const Error& error) {
+      image.error = error;
+    }
+    plan.images.push_back(std::move(image));
+  }
+  plan.to_remove = planner.left_over(plan.images);
+  inputs.remember();
+  planner.remember_stamps();
+  return plan;
+}
+
+std::vector<std::pair<std::string, PropertyChange>> changes_since(const PlannedImage& image,
+                                                                  const PartHashes& before,
+                                                                  const TextSet& texts,
+                                                                  Database& database) {
+  std::vector<std::pair<std::string, PropertyChange>> changes;
+  for (std::size_t i = 0; i < k_part_count; ++i) {
+    const Hash128 after = image.keys.parts[i];
+    if (before[i] == after) continue;
+    const std::string* new_text = texts.find(after);
+    DS_ASSERT(new_text != nullptr);
+    const std::optional<std::string> old_text = database.find_text(before[i]);
+    if (!old_text) {
+      changes.push_back({k_part_names[i], {"text", before[i].hex(), after.hex()}});
+      continue;
+    }
+    for (PropertyChange& change : diff_texts(*old_text, *new_text))
+      changes.push_back({k_part_names[i], std::move(change)});
+  }
+  return changes;
+}
+
+}  // namespace ds

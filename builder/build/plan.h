@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/build/dataset.h"
+#include "builder/build/inputs.h"
+#include "builder/build/keys.h"
+#include "builder/build/texts.h"
+#include "builder/recipe/recipe.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ds {
+
+/// PlacedFile::kind of the manifest's own files.
+inline constexpr const char* k_manifest_kind = "manifest";
+
+/// What an output file needs.
+enum class FileState {
+  in_place,  ///< the file is there and what its key says
+  in_store,  ///< only to be put into the dataset's folder
+  to_make,   ///< to be developed, encoded or traced
+};
+
+struct PlannedFile {
+  OutputFile output;
+  FileState state = FileState::to_make;
+};
+
+/// One image, what it needs and why.
+struct PlannedImage {
+  ImageSpec spec;
+  ImageKeys keys;
+  std::vector<PlannedFile> files;
+  bool trace_film = false, trace_geometry = false;
+  bool record = false;               ///< the database is behind though no file is
+  std::vector<std::string> reasons;  ///< why it is stale, each a sentence; empty where it is not
+  std::optional<Error> error;  ///< a file of its cannot be read: nothing above is filled but `spec`
+
+  bool stale() const { return !reasons.empty(); }
+  std::uint64_t samples() const;  ///< camera samples its film takes
+};
+
+/// A build, before anything is done. A pure reading of recipe, files and database, but for
+/// `Inputs`' memory of hashes.
+struct Plan {
+  std::vector<PlannedImage> images;  ///< in the order of `expand`
+  std::vector<std::string>
+      to_remove;  ///< files dsbuild made that no image names any more, relative to the folder
+  TextSet texts;
+};
+
+/// `force`: every image is traced again. `inputs` must outlive what is executed of the plan.
+Plan make_plan(Dataset& dataset, Inputs& inputs, bool force);
+
+/// The film and file keys a plan's image had when it was last built, by the text of each part;
+/// nothing for a new image.
+std::vector<std::pair<std::string, PropertyChange>> changes_since(const PlannedImage& image,
+                                                                  const PartHashes& before,
+                                                                  const TextSet& texts,
+                                                                  Database& database);
+
+}  // namespace ds

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/build/dataset.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace ds {
+
+/// What the command line said. A verb reads what its row of the table names; the rest keeps its
+/// default.
+struct Arguments {
+  std::string target;  ///< recipe or output folder
+  std::string image;   ///< id of an image, or the path of one of its files
+  std::vector<std::string> overrides;
+  std::string output_folder, store_folder, device;
+  std::uint64_t rerender = 0, seed = 0;
+  bool json = false, dry_run = false, keep_going = false, force = false, explain = false;
+
+  DatasetRequest request() const { return {target, overrides, output_folder, store_folder}; }
+};
+
+/// The options a verb can have. Each is declared once, in command_line.cc.
+enum class Option {
+  target,
+  optional_target_and_image,
+  overrides,
+  output_folder,
+  store_folder,
+  device,
+  json,
+  dry_run,
+  keep_going,
+  force,
+  explain,
+  rerender,
+  seed,
+};
+
+/// A verb of the command. `run` returns the exit code: 0 where all is well, 1 where something
+/// failed or differs. It throws Error for the rest.
+struct Verb {
+  const char* name;
+  const char* help;  ///< one line
+  std::vector<Option> options;
+  int (*run)(const Arguments& arguments);
+};
+
+/// In the order `--help` shows them.
+const std::vector<Verb>& verbs();
+
+/// Runs the verb that the command line names. Returns the exit code; throws Error.
+int run_command_line(std::span<const char* const> arguments);
+
+}  // namespace ds

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/build/execute.h"
+#include "builder/cmd/plan_text.h"
+#include "builder/cmd/progress.h"
+#include "builder/cmd/stop_signal.h"
+#include "builder/cmd/verbs.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+
+namespace ds {
+namespace {
+
+nlohmann::json to_json(const BuildResult& result, const Dataset& dataset) {
+  nlohmann::json failures = nlohmann::json::array();
+  for (const auto& [what, why] : result.failures)
+    failures.push_back({{"what", what}, {"why", why}});
+  return {{"images", result.images},           {"built", result.built},
+          {"reused", result.reused},           {"failed", result.failed},
+          {"not_reached", result.not_reached}, {"traced", result.traced},
+          {"developed", result.developed},     {"traced_samples", result.traced_samples},
+          {"seconds", result.seconds},         {"device", result.device},
+          {"stopped", result.stopped},         {"failures", failures},
+          {"folder", dataset.folder.string()}};
+}
+
+void print_result(const BuildResult& result, const Dataset& dataset) {
+  std::string text =
+      fmt::format("{}: {} images: {} built, {} reused, {} failed", dataset.recipe.name,
+                  result.images, result.built, result.reused, result.failed);
+  if (result.not_reached > 0) text += fmt::format(", {} not reached", result.not_reached);
+  text += fmt::format(", in {:.1f} s", result.seconds);
+  if (result.traced_samples > 0)
+    text += fmt::format("; {:.1f} Msamples traced on {}",
+                        static_cast<double>(result.traced_samples) * 1e-6, result.device);
+  fmt::print("{}\n", text);
+  fmt::print("pictures: {}\n", (dataset.folder / "images").string());
+}
+
+int dry_run(const Arguments& arguments, const Plan& plan) {
+  print_plan(arguments.json ? stderr : stdout, plan);
+  const PlanCounts counts = count(plan);
+  if (arguments.json)
+    print_json({{"images", counts.images},
+                {"built", 0},
+                {"reused", counts.up_to_date},
+                {"failed", counts.failed},
+                {"stale", counts.stale},
+                {"traced_samples", 0},
+                {"seconds", 0}});
+  else
+    fmt::print("{}\n", summary(counts));
+  return counts.failed > 0 ? 1 : 0;
+}
+
+}  // namespace
+
+int run_build(const Arguments& arguments) {
+  const std::atomic<bool>& stop = stop_on_signal();
+  RealDisk disk;
+  Dataset dataset =
+      open_dataset(arguments.request(), arguments.dry_run ? Access::look : Access::build, disk);
+  Inputs inputs(*dataset.database);
+  const Plan plan = make_plan(dataset, inputs, arguments.force);
+  if (arguments.dry_run) return dry_run(arguments, plan);
+  if (arguments.explain) print_plan(arguments.json ? stderr : stdout, plan);
+
+  const RendererFactory factory = [&] {
+    TracerOptions options;
+    options.device = arguments.device;
+    return make_tracer_renderer(inputs, dataset.recipe, options);
+  };
+  BuildResult result;
+  {
+    Progress progress;
+    result = execute(dataset, plan, inputs, {arguments.keep_going, arguments.force}, disk, factory,
+                     progress, stop);
+  }
+  for (const auto& [what, why] : result.failures)
+    fmt::print(stderr, "dsbuild: error: {}: {}\n", what, why);
+  if (result.stopped)
+    fmt::print(stderr, "dsbuild: stopped; what is finished is recorded, build again to go on\n");
+  if (arguments.json)
+    print_json(to_json(result, dataset));
+  else
+    print_result(result, dataset);
+  return result.ok() ? 0 : 1;
+}
+
+}  // namespace ds

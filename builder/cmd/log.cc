@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/build/dataset.h"
+#include "builder/cmd/plan_text.h"
+#include "builder/cmd/progress.h"
+#include "builder/cmd/verbs.h"
+
+#include <cstdio>
+
+namespace ds {
+
+int run_log(const Arguments& arguments) {
+  RealDisk disk;
+  const Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
+  nlohmann::json array = nlohmann::json::array();
+  for (const BuildRow& build : dataset.database->builds(dataset.row.id)) {
+    array.push_back({{"number", build.number},
+                     {"started_at", build.started_at},
+                     {"host", build.host},
+                     {"device", build.device},
+                     {"outcome", build.outcome},
+                     {"images", build.images},
+                     {"built", build.built},
+                     {"reused", build.reused},
+                     {"failed", build.failed},
+                     {"traced_samples", build.traced_samples},
+                     {"seconds", build.seconds}});
+    if (!arguments.json)
+      fmt::print(
+          "{} UTC  {:<8} {:>6} built {:>6} reused {:>4} failed {:>10.1f} Msamples {:>9}  {} {}\n",
+          build.started_at, build.outcome, build.built, build.reused, build.failed,
+          static_cast<double>(build.traced_samples) * 1e-6, format_duration(build.seconds),
+          build.host, build.device);
+  }
+  if (arguments.json) print_json({{"builds", array}});
+  return 0;
+}
+
+}  // namespace ds

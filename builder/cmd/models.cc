@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/cmd/plan_text.h"
+#include "builder/cmd/verbs.h"
+#include "builder/recipe/recipe.h"
+#include "tracer/scene/mesh.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+
+namespace ds {
+namespace {
+
+/// One row per count of the report, so that table and JSON cannot disagree.
+struct Column {
+  const char* name;   ///< JSON
+  const char* title;  ///< table
+  std::uint64_t MeshReport::*count;
+};
+constexpr Column k_columns[] = {
+    {"vertices", "vertices", &MeshReport::vertices},
+    {"faces", "faces", &MeshReport::faces},
+    {"n_gons", "n-gons", &MeshReport::n_gons},
+    {"triangles", "triangles", &MeshReport::triangles},
+    {"triangles_kept", "kept", &MeshReport::triangles_kept},
+    {"zero_area", "zero-area", &MeshReport::zero_area},
+    {"duplicate_faces", "duplicate", &MeshReport::duplicate_faces},
+    {"non_finite", "non-finite", &MeshReport::non_finite},
+    {"out_of_range", "out-of-range", &MeshReport::out_of_range},
+    {"unreferenced", "unreferenced", &MeshReport::unreferenced},
+    {"flipped", "flipped", &MeshReport::flipped},
+};
+
+void print_header() {
+  fmt::print("{:<24}", "model");
+  for (const Column& column : k_columns)
+    fmt::print(" {:>12}", column.title);
+  fmt::print("  stored\n");
+}
+
+void print_row(const std::string& name, const MeshReport& report) {
+  fmt::print("{:<24}", name);
+  for (const Column& column : k_columns)
+    fmt::print(" {:>12}", report.*column.count);
+  fmt::print("  {}\n", report.has_normals && report.has_uvs ? "normals, uvs"
+                       : report.has_normals                 ? "normals"
+                       : report.has_uvs                     ? "uvs"
+                                                            : "-");
+}
+
+nlohmann::json to_json(const std::string& name, const MeshReport& report) {
+  nlohmann::json object{
+      {"model", name}, {"has_normals", report.has_normals}, {"has_uvs", report.has_uvs}};
+  for (const Column& column : k_columns)
+    object[column.name] = report.*column.count;
+  return object;
+}
+
+}  // namespace
+
+int run_models(const Arguments& arguments) {
+  RealDisk disk;
+  const Recipe recipe = open_dataset(arguments.request(), Access::look, disk).recipe;
+  nlohmann::json models = nlohmann::json::array();
+  std::size_t failed = 0;
+  if (!arguments.json) print_header();
+  for (const std::filesystem::path& file : recipe.models) {
+    const std::string name = file.filename().string();
+    try {
+      const MeshReport report = read_model(file).report;
+      if (!arguments.json) print_row(name, report);
+      models.push_back(to_json(name, report));
+    } catch (const Error& error) {
+      ++failed;
+      if (!arguments.json) fmt::print("{:<24} cannot be used: {}\n", name, error.what());
+      models.push_back({{"model", name}, {"error", error.what()}});
+    }
+  }
+  if (arguments.json)
+    print_json({{"models", models}, {"failed", failed}});
+  else
+    fmt::print("{} models, {} cannot be used\n", recipe.models.size(), failed);
+  return failed > 0 ? 1 : 0;
+}
+
+}  // namespace ds

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/cmd/plan_text.h"
+
+#include "tracer/base/error.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+namespace ds {
+
+const char* step_of(const PlannedImage& image) {
+  if (!image.stale()) return "";
+  if (image.trace_film || image.trace_geometry) return "trace";
+  const auto to_make = [](const PlannedFile& file) { return file.state == FileState::to_make; };
+  return std::any_of(image.files.begin(), image.files.end(), to_make) ? "develop" : "place";
+}
+
+PlanCounts count(const Plan& plan) {
+  PlanCounts counts;
+  counts.images = plan.images.size();
+  counts.remove = plan.to_remove.size();
+  for (const PlannedImage& image : plan.images) {
+    const std::string_view step = step_of(image);
+    counts.failed += image.error ? 1U : 0U;
+    counts.up_to_date += !image.error && step.empty() ? 1U : 0U;
+    counts.stale += step.empty() ? 0U : 1U;
+    counts.trace += step == "trace" ? 1U : 0U;
+    counts.develop += step == "develop" ? 1U : 0U;
+    counts.place += step == "place" ? 1U : 0U;
+    counts.samples += image.trace_film ? image.samples() : 0;
+  }
+  return counts;
+}
+
+std::string summary(const PlanCounts& counts) {
+  std::string text = fmt::format(
+      "{} images: {} to make ({} to trace, {} to develop, {} to take from the store), {} up to "
+      "date",
+      counts.images, counts.stale, counts.trace, counts.develop, counts.place, counts.up_to_date);
+  if (counts.failed > 0) text += fmt::format(", {} cannot be made", counts.failed);
+  if (counts.remove > 0) text += fmt::format("; {} files to remove", counts.remove);
+  return text;
+}
+
+nlohmann::json to_json(const PlanCounts& counts) {
+  return {
+      {"images", counts.images}, {"up_to_date", counts.up_to_date}, {"stale", counts.stale},
+      {"trace", counts.trace},   {"develop", counts.develop},       {"place", counts.place},
+      {"failed", counts.failed}, {"remove", counts.remove},         {"samples", counts.samples}};
+}
+
+std::string line_of(const PlannedImage& image) {
+  return fmt::format("{}: {}: {}", image.spec.id, step_of(image), fmt::join(image.reasons, "; "));
+}
+
+void print_plan(std::FILE* stream, const Plan& plan) {
+  std::map<std::string, std::vector<std::string>> failures;
+  for (const PlannedImage& image : plan.images) {
+    if (image.error) failures[image.error->what()].push_back(image.spec.id);
+    if (image.stale()) fmt::print(stream, "{}\n", line_of(image));
+  }
+  for (const std::string& path : plan.to_remove)
+    fmt::print(stream, "{}: remove: no image of the recipe has it\n", path);
+  for (const auto& [why, ids] : failures)
+    fmt::print(stream, "{}{}: cannot be made: {}\n", ids.front(),
+               ids.size() > 1 ? fmt::format(" and {} more", ids.size() - 1) : "", why);
+}
+
+void print_json(const nlohmann::json& object) {
+  fmt::print("{}\n", object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+}  // namespace ds

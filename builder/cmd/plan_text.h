@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/build/plan.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <string>
+
+namespace ds {
+
+/// A plan in numbers.
+struct PlanCounts {
+  std::uint64_t images = 0, up_to_date = 0, failed = 0;
+  std::uint64_t stale = 0;    ///< = trace + develop + place
+  std::uint64_t trace = 0;    ///< a film or geometry is to be traced
+  std::uint64_t develop = 0;  ///< the film is there
+  std::uint64_t place = 0;    ///< the files are in the store
+  std::uint64_t remove = 0;   ///< files, not images
+  std::uint64_t samples = 0;  ///< camera samples to trace
+};
+PlanCounts count(const Plan& plan);
+
+/// "168 images: 3 to make (2 to trace, 1 to develop, 0 to take from the store), 165 up to date, 0
+/// failed".
+std::string summary(const PlanCounts& counts);
+nlohmann::json to_json(const PlanCounts& counts);
+
+/// One line: "human.ply/0: trace: material changed: body.kd: 0.5 -> 0.25; ...".
+std::string line_of(const PlannedImage& image);
+/// What it needs: "trace", "develop", "place"; empty for an image that is up to date.
+const char* step_of(const PlannedImage& image);
+
+/// Lists what is stale or fails on the stream, and what is to be removed.
+void print_plan(std::FILE* stream, const Plan& plan);
+
+/// Prints one JSON object as the last line of standard output. Text that is no UTF-8 is mended with
+/// U+FFFD.
+void print_json(const nlohmann::json& object);
+
+}  // namespace ds

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/cmd/progress.h"
+
+#include "tracer/base/error.h"
+
+#include <cstdio>
+#include <unistd.h>
+
+namespace ds {
+namespace {
+
+constexpr const char* k_erase_line = "\r\x1b[K";
+
+}  // namespace
+
+std::string format_duration(double seconds) {
+  const auto whole = static_cast<std::uint64_t>(seconds + 0.5);
+  const std::uint64_t hours = whole / 3600, minutes = whole / 60 % 60;
+  if (hours > 0) return fmt::format("{}:{:02}:{:02}", hours, minutes, whole % 60);
+  return fmt::format("{}:{:02}", minutes, whole % 60);
+}
+
+Progress::Progress() : moves_(::isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() {
+  clear();
+}
+
+void Progress::clear() {
+  if (moves_) std::fputs(k_erase_line, stderr);
+}
+
+void Progress::started(std::uint64_t images, std::uint64_t samples) {
+  images_ = images;
+  samples_ = samples;
+  start_ = Clock::now();
+}
+
+std::string Progress::line(const std::string& image, std::uint64_t samples_now) const {
+  const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+  const double traced = static_cast<double>(samples_traced_ + samples_now);
+  // Where samples are traced they are what takes the time; else the images are.
+  const double total = samples_ > 0 ? static_cast<double>(samples_) : static_cast<double>(images_);
+  const double done = samples_ > 0 ? static_cast<double>(samples_done_ + samples_now)
+                                   : static_cast<double>(images_done_);
+  const double share = total > 0 ? done / total : 1;
+  std::string text = fmt::format("[{}/{}] {:3.0f}% {}", images_done_, images_, 100 * share, image);
+  if (traced > 0 && seconds > 0)
+    text += fmt::format("  {:.2f} Msamples/s", traced / seconds * 1e-6);
+  if (share > 0 && share < 1) text += "  ETA " + format_duration(seconds * (1 - share) / share);
+  return text;
+}
+
+void Progress::show(const std::string& image, std::uint64_t samples_now) {
+  if (moves_) fmt::print(stderr, "{}{}", k_erase_line, line(image, samples_now));
+}
+
+void Progress::image_started(const PlannedImage& image) {
+  show(image.spec.id, 0);
+}
+
+void Progress::progress(const PlannedImage& image, const TraceProgress& progress) {
+  show(image.spec.id, progress.samples_done);
+}
+
+void Progress::image_done(const PlannedImage& image, const ImageWork& work) {
+  ++images_done_;
+  samples_done_ += image.trace_film ? image.samples() : 0;
+  samples_traced_ += work.samples;
+  if (moves_)
+    show(image.spec.id, 0);
+  else
+    fmt::print(stderr, "{}\n", line(image.spec.id, 0));
+}
+
+void Progress::image_failed(const PlannedImage& image, const std::string& why) {
+  // One that could not even be planned is told at the end, with the others its file fails.
+  if (image.error) return;
+  ++images_done_;
+  samples_done_ += image.trace_film ? image.samples() : 0;
+  clear();
+  fmt::print(stderr, "dsbuild: error: {}: {}\n", image.spec.id, why);
+}
+
+}  // namespace ds

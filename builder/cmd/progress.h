@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/build/execute.h"
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace ds {
+
+/// Shows a build's progress on standard error: one line that moves on a terminal, one line an image
+/// elsewhere.
+class Progress : public BuildObserver {
+ public:
+  Progress();
+  ~Progress() override;
+
+  void started(std::uint64_t images, std::uint64_t samples) override;
+  void image_started(const PlannedImage& image) override;
+  void progress(const PlannedImage& image, const TraceProgress& progress) override;
+  void image_done(const PlannedImage& image, const ImageWork& work) override;
+  void image_failed(const PlannedImage& image, const std::string& why) override;
+
+ private:
+  std::string line(const std::string& image, std::uint64_t samples_now) const;
+  void show(const std::string& image, std::uint64_t samples_now);
+  void clear();
+
+  using Clock = std::chrono::steady_clock;
+  bool moves_;
+  std::uint64_t images_ = 0, images_done_ = 0;
+  std::uint64_t samples_ = 0;         ///< planned
+  std::uint64_t samples_done_ = 0;    ///< of those, by finished images
+  std::uint64_t samples_traced_ = 0;  ///< really traced by finished images
+  Clock::time_point start_ = Clock::now();
+};
+
+/// "0:07", "12:34", "3:25:45".
+std::string format_duration(double seconds);
+
+}  // namespace ds

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/cmd/verbs.h"
+
+namespace ds {
+
+const std::vector<Verb>& verbs() {
+  using enum Option;
+  static const std::vector<Verb> table{
+      {"build",
+       "make every image of a recipe that is not there yet",
+       {target, overrides, output_folder, store_folder, device, dry_run, keep_going, force, explain,
+        json},
+       run_build},
+      {"plan",
+       "list the images a build would make, and why",
+       {target, overrides, output_folder, store_folder, json},
+       run_plan},
+      {"status",
+       "say how much of a dataset is up to date",
+       {target, overrides, output_folder, store_folder, json},
+       run_status},
+      {"explain",
+       "say which properties of an image changed, old and new",
+       {optional_target_and_image, overrides, output_folder, store_folder, json},
+       run_explain},
+      {"verify",
+       "check every file of a dataset, or trace some images again",
+       {target, overrides, output_folder, store_folder, rerender, seed, device, json},
+       run_verify},
+      {"models",
+       "list what was found and mended in each model",
+       {target, overrides, json},
+       run_models},
+      {"log",
+       "list the builds of a dataset: when, where, how long",
+       {target, overrides, output_folder, store_folder, json},
+       run_log},
+      {"devices", "list the OpenCL devices", {json}, run_devices},
+  };
+  return table;
+}
+
+}  // namespace ds

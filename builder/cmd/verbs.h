@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/cmd/arguments.h"
+
+namespace ds {
+
+int run_build(const Arguments& arguments);
+int run_plan(const Arguments& arguments);
+int run_status(const Arguments& arguments);
+int run_explain(const Arguments& arguments);
+int run_verify(const Arguments& arguments);
+int run_models(const Arguments& arguments);
+int run_devices(const Arguments& arguments);
+int run_log(const Arguments& arguments);
+
+}  // namespace ds

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/db/database.h"
+
+#include "builder/db/schema.h"
+
+#include <nlohmann/json.hpp>
+
+namespace ds {
+namespace {
+
+Hash128 hash_column(const Statement& row, int column) {
+  const std::optional<Hash128> hash = Hash128::from_hex(row.text(column));
+  if (!hash)
+    throw DamagedDatabase(
+        fmt::format("the database is damaged: \"{}\" is no hash", row.text(column)));
+  return *hash;
+}
+
+std::vector<std::string> parse_overrides(const std::string& text) {
+  try {
+    return nlohmann::json::parse(text).get<std::vector<std::string>>();
+  } catch (const nlohmann::json::exception& error) {
+    throw DamagedDatabase(fmt::format("the database is damaged: overrides: {}", error.what()));
+  }
+}
+
+}  // namespace
+
+Database::Database(const std::filesystem::path& file) : connection_(file) {
+  prepare_schema(connection_, file.string());
+  connection_.check();
+}
+
+void Database::put_text(Hash128 hash, std::string_view text) {
+  connection_.prepare("INSERT OR IGNORE INTO text VALUES (?1, ?2)")
+      .bind(1, hash.hex())
+      .bind(2, text)
+      .run();
+}
+
+std::optional<std::string> Database::find_text(Hash128 hash) {
+  Statement row = connection_.prepare("SELECT body FROM text WHERE hash = ?1");
+  if (!row.bind(1, hash.hex()).step()) return std::nullopt;
+  return row.text(0);
+}
+
+std::optional<Hash128> Database::find_content(const std::filesystem::path& file,
+                                              const FileStamp& stamp) {
+  Statement row = connection_.prepare(
+      "SELECT content FROM input_file WHERE path = ?1 AND size_bytes = ?2 AND mtime_ns = ?3 AND "
+      "inode = ?4");
+  row.bind(1, file.string())
+      .bind_count(2, stamp.size_bytes)
+      .bind(3, stamp.mtime_ns)
+      .bind_count(4, stamp.inode);
+  if (!row.step()) return std::nullopt;
+  return hash_column(row, 0);
+}
+
+void Database::put_content(const std::filesystem::path& file, const FileStamp& stamp,
+                           Hash128 content) {
+  connection_.prepare("INSERT OR REPLACE INTO input_file VALUES (?1, ?2, ?3, ?4, ?5)")
+      .bind(1, file.string())
+      .bind_count(2, stamp.size_bytes)
+      .bind(3, stamp.mtime_ns)
+      .bind_count(4, stamp.inode)
+      .bind(5, content.hex())
+      .run();
+}
+
+std::optional<Hash128> Database::find_geometry(Hash128 content, int reader) {
+  Statement row =
+      connection_.prepare("SELECT geometry FROM geometry WHERE content = ?1 AND reader = ?2");
+  if (!row.bind(1, content.hex()).bind(2, std::int64_t{reader}).step()) return std::nullopt;
+  return hash_column(row, 0);
+}
+
+void Database::put_geometry(Hash128 content, int reader, Hash128 geometry) {
+  connection_.prepare("INSERT OR REPLACE INTO geometry VALUES (?1, ?2, ?3)")
+      .bind(1, content.hex())
+      .bind(2, std::int64_t{reader})
+      .bind(3, geometry.hex())
+      .run();
+}
+
+std::optional<Product> Database::find_product(Hash128 key) {
+  Statement row = connection_.prepare(
+      "SELECT kind, object, size_bytes, sha256, pixels, tone_map_scale, rejected_samples FROM "
+      "product WHERE key = ?1");
+  if (!row.bind(1, key.hex()).step()) return std::nullopt;
+  return Product{key,         row.text(0),         hash_column(row, 1), row.count(2),
+                 row.text(3), hash_column(row, 4), row.real(5),         row.count(6)};
+}
+
+void Database::put_product(const Product& product, const TraceRun& run) {
+  connection_
+      .prepare("INSERT OR REPLACE INTO product VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)")
+      .bind(1, product.key.hex())
+      .bind(2, product.kind)
+      .bind(3, product.object.hex())
+      .bind_count(4, product.size_bytes)
+      .bind(5, product.sha256)
+      .bind(6, product.pixels.hex())
+      .bind(7, product.tone_map_scale)
+      .bind_count(8, product.rejected_samples)
+      .bind(9, run.seconds)
+      .bind(10, run.device)
+      .run();
+}
+
+std::optional<DatasetRow> Database::find_dataset(const std::string& id) {
+  Statement row = connection_.prepare(
+      "SELECT name, recipe, working_folder, overrides, manifest FROM dataset WHERE id = ?1");
+  if (!row.bind(1, id).step()) return std::nullopt;
+  return DatasetRow{
+      id, row.text(0), row.text(1), row.text(2), parse_overrides(row.text(3)), hash_column(row, 4)};
+}
+
+void Database::put_dataset(const DatasetRow& row) {
+  // A folder or file name may hold any bytes; what is not UTF-8 is refused by the JSON writer only
+  // for overrides.
+  connection_.prepare("INSERT OR REPLACE INTO dataset VALUES (?1, ?2, ?3, ?4, ?5, ?6)")
+      .bind(1, row.id)
+      .bind(2, row.name)
+      .bind(3, row.recipe.string())
+      .bind(4, row.working_folder.string())
+      .bind(5, nlohmann::json(row.overrides).dump())
+      .bind(6, row.manifest.hex())
+      .run();
+}
+
+void Database::set_manifest(const std::string& dataset, Hash128 manifest) {
+  connection_.prepare("UPDATE dataset SET manifest = ?2 WHERE id = ?1")
+      .bind(1, dataset)
+      .bind(2, manifest.hex())
+      .run();
+}
+
+std::map<std::string, PartHashes> Database::images(const std::string& dataset) {
+  std::map<std::string, PartHashes> images;
+  Statement row = connection_.prepare(
+      "SELECT id, model, material, environment, camera, engine, files FROM image WHERE dataset = "
+      "?1");
+  row.bind(1, dataset);
+  while (row.step()) {
+    PartHashes& parts = images[row.text(0)];
+    for (std::size_t i = 0; i < k_part_count; ++i)
+      parts[i] = hash_column(row, static_cast<int>(i) + 1);
+  }
+  return images;
+}
+
+void Database::put_image(const std::string& dataset, const std::string& image,
+                         const PartHashes& parts) {
+  Statement statement =
+      connection_.prepare("INSERT OR REPLACE INTO image VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)");
+  statement.bind(1, dataset).bind(2, image);
+  for (std::size_t i = 0; i < k_part_count; ++i)
+    statement.bind(static_cast<int>(i) + 3, parts[i].hex());
+  statement.run();
+}
+
+void Database::remove_image(const std::string& dataset, const std::string& image) {
+  connection_.prepare("DELETE FROM image WHERE dataset = ?1 AND id = ?2")
+      .bind(1, dataset)
+      .bind(2, image)
+      .run();
+}
+
+std::map<std::string, PlacedFile> Database::placed_files(const std::string& dataset) {
+  std::map<std::string, PlacedFile> files;
+  Statement row = connection_.prepare(
+      "SELECT path, image, kind, product, object, size_bytes, mtime_ns, inode FROM placed WHERE "
+      "dataset = ?1");
+  row.bind(1, dataset);
+  while (row.step()) {
+    PlacedFile file{row.text(0),         row.text(1),         row.text(2),
+                    hash_column(row, 3), hash_column(row, 4), std::nullopt};
+    if (row.integer(7) != 0) file.stamp = FileStamp{row.count(5), row.integer(6), row.count(7)};
+    files.emplace(file.path, std::move(file));
+  }
+  return files;
+}
+
+void Database::put_placed(const std::string& dataset, const PlacedFile& file) {
+  const FileStamp stamp = file.stamp.value_or(FileStamp{});
+  connection_.prepare("INSERT OR REPLACE INTO placed VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)")
+      .bind(1, dataset)
+      .bind(2, file.path)
+      .bind(3, file.image)
+      .bind(4, file.kind)
+      .bind(5, file.product.hex())
+      .bind(6, file.object.hex())
+      .bind_count(7, stamp.size_bytes)
+      .bind(8, stamp.mtime_ns)
+      .bind_count(9, stamp.inode)
+      .run();
+}
+
+void Database::remove_placed(const std::string& dataset, const std::string& path) {
+  connection_.prepare("DELETE FROM placed WHERE dataset = ?1 AND path = ?2")
+      .bind(1, dataset)
+      .bind(2, path)
+      .run();
+}
+
+std::int64_t Database::begin_build(const std::string& dataset, const std::string& host) {
+  Statement row = connection_.prepare(
+      "INSERT INTO build (dataset, started_at, host, device, outcome, images, built, reused, "
+      "failed, traced_samples, "
+      "seconds) VALUES (?1, datetime('now'), ?2, '', 'running', 0, 0, 0, 0, 0, 0) RETURNING "
+      "number");
+  row.bind(1, dataset).bind(2, host).step();
+  const std::int64_t number = row.integer(0);
+  row.step();  // to its end: the row is only written then
+  return number;
+}
+
+void Database::update_build(const BuildRow& row) {
+  connection_
+      .prepare(
+          "UPDATE build SET device = ?2, outcome = ?3, images = ?4, built = ?5, reused = ?6, "
+          "failed = ?7, "
+          "traced_samples = ?8, seconds = ?9 WHERE number = ?1")
+      .bind(1, row.number)
+      .bind(2, row.device)
+      .bind(3, row.outcome)
+      .bind_count(4, row.images)
+      .bind_count(5, row.built)
+      .bind_count(6, row.reused)
+      .bind_count(7, row.failed)
+      .bind_count(8, row.traced_samples)
+      .bind(9, row.seconds)
+      .run();
+}
+
+std::vector<BuildRow> Database::builds(const std::string& dataset) {
+  std::vector<BuildRow> builds;
+  Statement row = connection_.prepare(
+      "SELECT number, started_at, host, device, outcome, images, built, reused, failed, "
+      "traced_samples, seconds "
+      "FROM build WHERE dataset = ?1 ORDER BY number DESC");
+  row.bind(1, dataset);
+  while (row.step())
+    builds.push_back({row.integer(0), row.text(1), row.text(2), row.text(3), row.text(4),
+                      row.count(5), row.count(6), row.count(7), row.count(8), row.count(9),
+                      row.real(10)});
+  return builds;
+}
+
+}  // namespace ds

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/db/file_stamp.h"
+#include "builder/db/sqlite.h"
+#include "tracer/base/hash.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ds {
+
+/// Something made and kept: a film, or one file of an image. The key is a hash of all it depends
+/// on.
+struct Product {
+  Hash128 key;
+  std::string kind;  ///< "film", "image", "mask", "depth"
+  Hash128 object;    ///< of its bytes: its name in the store
+  std::uint64_t size_bytes = 0;
+  std::string sha256;                  ///< of its bytes
+  Hash128 pixels;                      ///< of its decoded pixels
+  double tone_map_scale = 1;           ///< images: the factor the tone map used
+  std::uint64_t rejected_samples = 0;  ///< films and images
+};
+
+/// How and when a film was made. Never in a manifest: another machine has other values.
+struct TraceRun {
+  double seconds = 0;
+  std::string device;
+};
+
+/// The parts of an image's render key, then the text of what is done to its film.
+inline constexpr std::size_t k_part_count = 6;
+inline constexpr std::array<const char*, k_part_count> k_part_names{
+    "model", "material", "environment", "camera", "engine", "files"};
+using PartHashes = std::array<Hash128, k_part_count>;
+
+/// A file that dsbuild put into a dataset's folder.
+struct PlacedFile {
+  std::string path;   ///< relative to the dataset's folder
+  std::string image;  ///< id
+  std::string kind;
+  Hash128 product;
+  Hash128 object;
+  std::optional<FileStamp> stamp;  ///< absent: not seen whole since it was recorded
+};
+
+struct DatasetRow {
+  std::string id;  ///< 32 hexadecimal digits, fixed when the dataset is first built
+  std::string name;
+  std::filesystem::path recipe;          ///< absolute
+  std::filesystem::path working_folder;  ///< what relative paths in `overrides` start from
+  std::vector<std::string> overrides;
+  Hash128 manifest;  ///< of what the manifest was written from, zero before the first
+};
+
+struct BuildRow {
+  std::int64_t number = 0;
+  std::string started_at;  ///< UTC, "2024-02-29 12:00:00"
+  std::string host, device;
+  std::string outcome;  ///< "running" (or killed), "done", "failed", "stopped"
+  std::uint64_t images = 0, built = 0, reused = 0, failed = 0, traced_samples = 0;
+  double seconds = 0;
+};
+
+/// What dsbuild remembers between runs, for every dataset of one store. Every call is one
+/// statement; callers group calls in a `Transaction` of `connection()`. Throws what `Statement`
+/// throws. Not safe from two threads at once.
+class Database {
+ public:
+  /// Opens or makes the file and checks it whole. Throws DamagedDatabase, or Error(io) where the
+  /// file was made by a newer dsbuild. An empty path is a database in memory.
+  explicit Database(const std::filesystem::path& file);
+  Connection& connection() { return connection_; }
+
+  /// Canonical texts by their hash.
+  void put_text(Hash128 hash, std::string_view text);
+  std::optional<std::string> find_text(Hash128 hash);
+
+  /// Content hashes of input files by stamp.
+  std::optional<Hash128> find_content(const std::filesystem::path& file, const FileStamp& stamp);
+  void put_content(const std::filesystem::path& file, const FileStamp& stamp, Hash128 content);
+  /// Geometry hashes of model files by content. `reader` is the version of what read them.
+  std::optional<Hash128> find_geometry(Hash128 content, int reader);
+  void put_geometry(Hash128 content, int reader, Hash128 geometry);
+
+  std::optional<Product> find_product(Hash128 key);
+  void put_product(const Product& product, const TraceRun& run);
+
+  std::optional<DatasetRow> find_dataset(const std::string& id);
+  void put_dataset(const DatasetRow& row);
+  void set_manifest(const std::string& dataset, Hash128 manifest);
+
+  std::map<std::string, PartHashes> images(const std::string& dataset);
+  void put_image(const std::string& dataset, const std::string& image, const PartHashes& parts);
+  void remove_image(const std::string& dataset, const std::string& image);
+
+  /// By path.
+  std::map<std::string, PlacedFile> placed_files(const std::string& dataset);
+  void put_placed(const std::string& dataset, const PlacedFile& file);
+  void remove_placed(const std::string& dataset, const std::string& path);
+
+  std::int64_t begin_build(const std::string& dataset, const std::string& host);
+  void update_build(const BuildRow& row);
+  /// The newest first.
+  std::vector<BuildRow> builds(const std::string& dataset);
+
+ private:
+  Connection connection_;
+};
+
+}  // namespace ds

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/db/file_stamp.h"
+
+#include "tracer/base/error.h"
+
+#include <cerrno>
+#include <chrono>
+#include <sys/stat.h>
+#include <system_error>
+
+namespace ds {
+namespace {
+
+constexpr std::int64_t k_ns_per_s = 1'000'000'000;
+
+}  // namespace
+
+std::optional<FileStamp> stamp_of(const std::filesystem::path& file) {
+  struct stat status = {};
+  if (::stat(file.c_str(), &status) != 0) {
+    if (errno == ENOENT || errno == ENOTDIR) return std::nullopt;
+    fail(ErrorKind::io, "{}: cannot look at the file: {}", file.string(),
+         std::generic_category().message(errno));
+  }
+  if (!S_ISREG(status.st_mode)) return std::nullopt;
+  return FileStamp{static_cast<std::uint64_t>(status.st_size),
+                   std::int64_t{status.st_mtim.tv_sec} * k_ns_per_s + status.st_mtim.tv_nsec,
+                   std::uint64_t{status.st_ino}};
+}
+
+bool is_racy(const FileStamp& stamp) {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const std::int64_t now_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+  return stamp.mtime_ns > now_ns - k_ns_per_s;
+}
+
+}  // namespace ds

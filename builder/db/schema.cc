@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/db/schema.h"
+
+namespace ds {
+namespace {
+
+/// Hashes are 32 hexadecimal digits, so that a person can read the tables with the sqlite3 shell.
+constexpr const char* k_tables = R"sql(
+CREATE TABLE text (
+  hash TEXT PRIMARY KEY,      -- of the body
+  body TEXT NOT NULL
+) WITHOUT ROWID;
+CREATE TABLE input_file (
+  path TEXT PRIMARY KEY,
+  size_bytes INTEGER NOT NULL, mtime_ns INTEGER NOT NULL, inode INTEGER NOT NULL,
+  content TEXT NOT NULL
+) WITHOUT ROWID;
+CREATE TABLE geometry (
+  content TEXT NOT NULL, reader INTEGER NOT NULL,
+  geometry TEXT NOT NULL,
+  PRIMARY KEY (content, reader)
+) WITHOUT ROWID;
+CREATE TABLE product (
+  key TEXT PRIMARY KEY,
+  kind TEXT NOT NULL,
+  object TEXT NOT NULL,
+  size_bytes INTEGER NOT NULL,
+  sha256 TEXT NOT NULL,
+  pixels TEXT NOT NULL,
+  tone_map_scale REAL NOT NULL,
+  rejected_samples INTEGER NOT NULL,
+  seconds REAL NOT NULL,
+  device TEXT NOT NULL
+) WITHOUT ROWID;
+CREATE TABLE dataset (
+  id TEXT PRIMARY KEY,
+  name TEXT NOT NULL,
+  recipe TEXT NOT NULL,
+  working_folder TEXT NOT NULL,
+  overrides TEXT NOT NULL,    -- JSON array of strings
+  manifest TEXT NOT NULL
+) WITHOUT ROWID;
+CREATE TABLE image (
+  dataset TEXT NOT NULL, id TEXT NOT NULL,
+  model TEXT NOT NULL, material TEXT NOT NULL, environment TEXT NOT NULL,
+  camera TEXT NOT NULL, engine TEXT NOT NULL, files TEXT NOT NULL,
+  PRIMARY KEY (dataset, id)
+) WITHOUT ROWID;
+CREATE TABLE placed (
+  dataset TEXT NOT NULL, path TEXT NOT NULL,
+  image TEXT NOT NULL, kind TEXT NOT NULL,
+  product TEXT NOT NULL, object TEXT NOT NULL,
+  size_bytes INTEGER NOT NULL, mtime_ns INTEGER NOT NULL,
+  inode INTEGER NOT NULL,     -- 0: the file was not seen whole since it was recorded
+  PRIMARY KEY (dataset, path)
+) WITHOUT ROWID;
+CREATE TABLE build (
+  number INTEGER PRIMARY KEY,
+  dataset TEXT NOT NULL,
+  started_at TEXT NOT NULL, host TEXT NOT NULL, device TEXT NOT NULL,
+  outcome TEXT NOT NULL,
+  images INTEGER NOT NULL, built INTEGER NOT NULL, reused INTEGER NOT NULL, failed INTEGER NOT NULL,
+  traced_samples INTEGER NOT NULL,
+  seconds REAL NOT NULL
+);
+CREATE INDEX build_dataset ON build (dataset);
+PRAGMA user_version = 1;
+)sql";
+static_assert(k_schema_version == 1, "the last line of k_tables states the version too");
+
+std::int64_t user_version(Connection& connection) {
+  Statement statement = connection.prepare("PRAGMA user_version");
+  statement.step();
+  return statement.integer(0);
+}
+
+bool has_tables(Connection& connection) {
+  Statement statement = connection.prepare("SELECT 1 FROM sqlite_schema LIMIT 1");
+  return statement.step();
+}
+
+}  // namespace
+
+void prepare_schema(Connection& connection, const std::string& name) {
+  if (user_version(connection) == k_schema_version) return;
+  // A second look under the write lock: another process may be making the tables now.
+  Transaction transaction(connection);
+  const std::int64_t version = user_version(connection);
+  if (version == k_schema_version) return;
+  if (version > k_schema_version)
+    fail(ErrorKind::io, "{}: wanted a database of version {}, found {}: made by a newer dsbuild",
+         name, k_schema_version, version);
+  if (version != 0 || has_tables(connection))
+    throw DamagedDatabase(
+        fmt::format("{}: the database is damaged: it is no database of dsbuild", name));
+  connection.execute(k_tables);
+  transaction.commit();
+}
+
+}  // namespace ds

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/db/sqlite.h"
+
+namespace ds {
+
+/// Version of the tables, in the file's `user_version`.
+///   1: first
+/// An older file would be read by converting it here; a newer one is refused, since writing to it
+/// could lose what this program does not know.
+inline constexpr int k_schema_version = 1;
+
+/// Makes the tables where the file is new. Throws Error(io) for a file of a newer version,
+/// DamagedDatabase for one that is some other program's.
+void prepare_schema(Connection& connection, const std::string& name);
+
+}  // namespace ds

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/recipe/assets.h"
+
+#include "builder/recipe/recipe.h"
+#include "manifests/json_text.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <system_error>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What tells models, materials and environments apart.
+struct AssetKind {
+  std::string_view section;
+  std::string_view wanted;            ///< of an element of `files`
+  std::string_view wanted_in_folder;  ///< of a folder's content
+  bool (*is_one)(const fs::path&);    ///< whether a path named in `files` can be one
+  bool (*belongs)(const fs::path&);   ///< whether an entry of `dir` is one
+  std::string (*name)(const fs::path&);
+};
+
+bool is_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+bool has_ending(const fs::path& path, std::initializer_list<std::string_view> endings) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return std::find(endings.begin(), endings.end(), ending) != endings.end();
+}
+
+bool is_model(const fs::path& path) {
+  return has_ending(path, {".ply", ".off"}) && is_file(path);
+}
+bool is_material(const fs::path& path) {
+  return has_ending(path, {".mat"}) && is_file(path);
+}
+bool is_environment(const fs::path& path) {
+  return is_file(path / "environment.scn");
+}
+std::string file_name(const fs::path& path) {
+  return path.filename().string();
+}
+
+constexpr AssetKind k_models{"models", "a file", ".ply or .off file", is_file, is_model, file_name};
+constexpr AssetKind k_materials{"materials", "a file",    ".mat file",
+                                is_file,     is_material, material_name};
+constexpr AssetKind k_environments{"environments",
+                                   "a folder that holds an environment.scn",
+                                   "folder that holds an environment.scn",
+                                   is_environment,
+                                   is_environment,
+                                   environment_name};
+
+bool fits_manifest(const std::string& name) {
+  const bool odd = std::any_of(name.begin(), name.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == '\\';
+  });
+  try {
+    canonical_json(name);
+  } catch (const Error&) {
+    return false;
+  }
+  return !odd;
+}
+
+/// Entries of a folder that `belongs`, hidden ones left out.
+template <typename Iterator>
+std::vector<fs::path> list_folder(const fs::path& folder, const AssetKind& kind,
+                                  std::error_code& error) {
+  std::vector<fs::path> found;
+  for (Iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    const fs::path& path = at->path();
+    if (!file_name(path).starts_with('.') && kind.belongs(path)) found.push_back(path);
+  }
+  return found;
+}
+
+class Finder {
+ public:
+  Finder(const AssetKind& kind, Settings& settings)
+      : kind_(kind),
+        settings_(settings),
+        dir_key_(std::string(kind.section) + ".dir"),
+        files_key_(std::string(kind.section) + ".files") {}
+
+  std::vector<fs::path> find() {
+    choose_key();
+    if (const RecipeValue* files = settings_.find(files_key_)) {
+      for (const RecipeValue& file : *files->array())
+        add_named(file);
+    } else if (const RecipeValue* dir = settings_.find(dir_key_)) {
+      add_folder(*dir);
+    }
+    std::vector<fs::path> paths;
+    for (const auto& [name, path] : found_)
+      paths.push_back(path);
+    return paths;
+  }
+
+ private:
+  /// One of the two keys stays; the one that --set gives replaces the recipe's other.
+  void choose_key() {
+    if (settings_.given(dir_key_) && settings_.given(files_key_)) {
+      if (settings_.given_by_set(files_key_) && !settings_.given_by_set(dir_key_)) {
+        settings_.unset(dir_key_);
+      } else if (settings_.given_by_set(dir_key_) && !settings_.given_by_set(files_key_)) {
+        settings_.unset(files_key_);
+      } else if (const RecipeValue* files = settings_.find(files_key_)) {
+        settings_.complain(*files, files_key_, "must not be given together with " + dir_key_);
+      }
+    } else if (!settings_.given(dir_key_) && !settings_.given(files_key_)) {
+      settings_.complain(
+          dir_key_, fmt::format("or {} must be given, for example with --set {}=FOLDER", files_key_,
+                                dir_key_));
+    }
+  }
+
+  void add_named(const RecipeValue& file) {
+    const fs::path path = settings_.resolve(file);
+    if (kind_.is_one(path)) {
+      add(file, files_key_, path);
+    } else {
+      settings_.complain(
+          file, files_key_,
+          fmt::format("must name {}, found none at {}", kind_.wanted, path.string()));
+    }
+  }
+
+  void add_folder(const RecipeValue& dir) {
+    const fs::path folder = settings_.resolve(dir);
+    std::error_code error;
+    const bool recursive = kind_.section == "models" && settings_.boolean("models.recursive");
+    const auto paths = recursive
+                           ? list_folder<fs::recursive_directory_iterator>(folder, kind_, error)
+                           : list_folder<fs::directory_iterator>(folder, kind_, error);
+    if (error) {
+      settings_.complain(
+          dir, dir_key_,
+          fmt::format("must be a folder, found {}: {}", folder.string(), error.message()));
+    } else if (paths.empty()) {
+      settings_.complain(
+          dir, dir_key_,
+          fmt::format("must hold a {}, found none in {}", kind_.wanted_in_folder, folder.string()));
+    }
+    for (const fs::path& path : paths)
+      add(dir, dir_key_, path);
+  }
+
+  void add(const RecipeValue& giver, const std::string& key, const fs::path& path) {
+    const std::string name = kind_.name(path);
+    if (!fits_manifest(name)) {
+      settings_.complain(
+          giver, key,
+          fmt::format(
+              "must give names of UTF-8 without control characters and backslashes, got {:?}",
+              path.string()));
+      return;
+    }
+    const auto [other, is_new] = found_.emplace(name, path);
+    if (!is_new) {
+      settings_.complain(giver, key,
+                         fmt::format("must give each name once, got {} at {} and {}", name,
+                                     std::min(other->second, path).string(),
+                                     std::max(other->second, path).string()));
+    }
+  }
+
+  const AssetKind& kind_;
+  Settings& settings_;
+  std::string dir_key_, files_key_;
+  std::map<std::string, fs::path> found_;  // by name, which sorts them
+};
+
+}  // namespace
+
+std::vector<fs::path> find_models(Settings& settings) {
+  return Finder(k_models, settings).find();
+}
+std::vector<fs::path> find_materials(Settings& settings) {
+  return Finder(k_materials, settings).find();
+}
+std::vector<fs::path> find_environments(Settings& settings) {
+  return Finder(k_environments, settings).find();
+}
+
+}  // namespace ds

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/recipe/settings.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace ds {
+
+/// Model files: models.files, or the .ply and .off files (in any case) of models.dir but for hidden
+/// ones; sorted by file name. Every problem is a finding: neither or both keys given, nothing
+/// found, no such file, one name twice, a name that a manifest cannot hold (control characters, a
+/// backslash, not UTF-8).
+std::vector<std::filesystem::path> find_models(Settings& settings);
+/// Material files: materials.files, or the .mat files of materials.dir.
+std::vector<std::filesystem::path> find_materials(Settings& settings);
+/// Environment folders: environments.files, or the folders of environments.dir that hold an
+/// environment.scn.
+std::vector<std::filesystem::path> find_environments(Settings& settings);
+
+}  // namespace ds

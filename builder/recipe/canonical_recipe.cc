@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/recipe/canonical_recipe.h"
+
+#include <optional>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string list_of_names(const std::vector<fs::path>& paths) {
+  std::string list;
+  for (const fs::path& path : paths)
+    list += (list.empty() ? "" : ", ") + to_toml(path.filename().string());
+  return "[" + list + "]";
+}
+
+/// Integers where a number is wanted (49) become numbers (49.0), inside points too.
+RecipeValue as_number(const RecipeValue& value) {
+  RecipeValue to = value;
+  if (value.is_number()) to.value = value.number();
+  if (auto* list = std::get_if<RecipeValue::Array>(&to.value)) {
+    for (RecipeValue& element : *list)
+      element = as_number(element);
+  }
+  return to;
+}
+
+std::optional<std::string> own_text(const KeySpec& key, const Recipe& recipe) {
+  if (key.name == "dataset.name") return to_toml(recipe.name);
+  if (key.name == "models.files") return list_of_names(recipe.models);
+  if (key.name == "materials.files") return list_of_names(recipe.materials);
+  if (key.name == "environments.files") return list_of_names(recipe.environments);
+  if (key.name == "classes.train" && recipe.train_classes)
+    return to_toml(recipe.train_classes->filename().string());
+  if (key.name == "classes.test" && recipe.test_classes)
+    return to_toml(recipe.test_classes->filename().string());
+  return std::nullopt;
+}
+
+bool is_number_type(KeyType type) {
+  return type == KeyType::number || type == KeyType::point || type == KeyType::point_list;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> canonical_settings(const Settings& settings,
+                                                                    const Recipe& recipe) {
+  std::vector<std::pair<std::string, std::string>> lines;
+  for (const KeySpec& key : recipe_keys()) {
+    const RecipeValue* value = settings.find(key.name);
+    if (const auto text = own_text(key, recipe)) {
+      lines.emplace_back(key.name, *text);
+    } else if (value != nullptr && key.type != KeyType::path && settings.applies(key)) {
+      lines.emplace_back(key.name, to_toml(is_number_type(key.type) ? as_number(*value) : *value));
+    }
+  }
+  return lines;
+}
+
+std::string canonical_recipe(const Recipe& recipe) {
+  std::string text;
+  for (const auto& [key, value] : recipe.settings)
+    text += key + " = " + value + "\n";
+  return text;
+}
+
+}  // namespace ds

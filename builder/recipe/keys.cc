@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/recipe/keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace ds {
+namespace {
+
+constexpr KeyRange k_any{};
+constexpr KeyRange at_least(double least) {
+  return {.least = least};
+}
+constexpr double k_far_m = 1e6;  // beyond it a single-precision tracer has nothing to say
+constexpr KeyRange k_coordinate{.least = -k_far_m, .most = k_far_m};
+constexpr KeyRange k_distance{.least = 0, .most = k_far_m, .open_least = true};
+constexpr KeyRange k_factor{.least = 1e-6, .most = 1e6};
+constexpr KeyRange between(double least, double most) {
+  return {.least = least, .most = most};
+}
+
+constexpr std::string_view k_ring_sets =
+    R"(camera.set = "half-dodecahedron" | "orbit" | "hemisphere")";
+constexpr std::string_view k_counted_sets = R"(camera.set = "orbit" | "hemisphere")";
+constexpr std::string_view k_reinhard = R"(outputs.tone_map = "reinhard02")";
+
+using enum KeyType;
+
+constexpr std::array k_keys = {
+    KeySpec{"dataset.name", name, "", "(the recipe's file name less .toml)", k_any, "", "",
+            "Names the dataset and its folder under out/"},
+    KeySpec{"dataset.seed", integer, "", "0", at_least(0), "", "",
+            "Changes every random choice, every split by hash and the noise of every image"},
+    KeySpec{"dataset.licence", text, "", "\"\"", k_any, "", "",
+            "Licence of the pictures, copied into the manifest"},
+
+    KeySpec{"models.dir", path, "", "", k_any, "", "",
+            "Folder of models: its .ply and .off files. Either this or models.files must be given; "
+            "with --set, the one given replaces the other"},
+    KeySpec{"models.files", path_list, "", "", k_any, "", "",
+            "Model files, of any name. No two models may have one file name"},
+    KeySpec{"models.recursive", boolean, "", "false", k_any, "", "",
+            "Look into the folders inside models.dir too"},
+    KeySpec{"models.up", choice, "", "\"y\"", k_any, R"("y" | "z")", "",
+            "The models' upward axis. \"y\" turns them by 90 degrees about x, so that Z is up; "
+            "\"z\" leaves them"},
+    KeySpec{"models.size_m", number, "m", "0.16", between(0, k_far_m), "", "",
+            "Longest side of the bounding box after scaling; 0 keeps the size"},
+    KeySpec{"models.ground_z_m", number, "m", "-0.0574", k_coordinate, "false", "",
+            "The least z after moving; false leaves the height"},
+    KeySpec{"models.centre", choice, "", "\"mass\"", k_any, R"("mass" | "box" | "none")", "",
+            "What is moved to x = y = 0: the surface's centre of mass, the middle of the bounding "
+            "box, or nothing"},
+    KeySpec{
+        "models.normals", choice, "", "\"smooth\"", k_any, R"("smooth" | "keep" | "flat")", "",
+        "Vertex normals: weighted by area and angle and split at creases; the file's, which must "
+        "have some; or one a face"},
+    KeySpec{"models.crease_deg", number, "degree", "60", between(0, 180), "",
+            R"(models.normals = "smooth")",
+            "Faces that meet at a larger angle keep an edge; 180 smooths every edge"},
+
+    KeySpec{"classes.train", path, "", "", k_any, "", "",
+            "Class file (.cla) of the training models. {models.dir} in it stands for models.dir, "
+            "and the key counts as unset where models.files is used instead"},
+    KeySpec{"classes.test", path, "", "", k_any, "", "", "Class file of the test models, likewise"},
+    KeySpec{"classes.split.test", number, "", "", between(0, 1), "", "",
+            "Share of the models to put into the test split, where there are no class files. "
+            "Without it there is no split"},
+    KeySpec{"classes.split.by", choice, "", "\"model\"", k_any, "\"model\"", "",
+            "What is split: all images of a model stay together, chosen by a hash of dataset.seed "
+            "and the model's file name"},
+    KeySpec{"classes.missing", choice, "", "\"ignore\"", k_any, R"("ignore" | "error")", "",
+            "A model that a class file lists and that has no file: count it, or fail"},
+    KeySpec{"classes.unlisted", choice, "", "\"keep\"", k_any, R"("keep" | "skip" | "error")", "",
+            "A model file that no class file lists: build it with class and split \"\", leave it "
+            "out, or fail"},
+
+    KeySpec{"materials.dir", path, "", "", k_any, "", "",
+            "Folder of materials: its .mat files. Either this or materials.files must be given; "
+            "with --set, the one given replaces the other"},
+    KeySpec{"materials.files", path_list, "", "", k_any, "", "",
+            "Material files, of any name; a material's name is its file name less the ending"},
+    KeySpec{"materials.assign", choice, "", "\"random\"", k_any, R"("random" | "cycle" | "all")",
+            "",
+            "Which material an image shows: one by chance, one view after the other, or an image "
+            "for each"},
+    KeySpec{"materials.per", choice, "", "\"model\"", k_any, R"("model" | "view")",
+            R"(materials.assign = "random")",
+            "Whether chance chooses once for all views of a model, or anew for each view"},
+
+    KeySpec{"environments.dir", path, "", "", k_any, "", "",
+            "Folder of environments: the folders in it that hold an environment.scn. Either this "
+            "or environments.files must be given; with --set, the one given replaces the other"},
+    KeySpec{"environments.files", path_list, "", "", k_any, "", "",
+            "Environment folders; an environment's name is its folder's"},
+    KeySpec{"environments.assign", choice, "", "\"cycle\"", k_any, R"("cycle" | "random" | "all")",
+            "", "Which environment an image shows, as materials.assign"},
+    KeySpec{"environments.per", choice, "", "\"view\"", k_any, R"("view" | "model")",
+            R"(environments.assign = "random")", "As materials.per"},
+
+    KeySpec{"camera.set", choice, "", "\"half-dodecahedron\"", k_any,
+            R"("half-dodecahedron" | "list" | "orbit" | "hemisphere")", "",
+            "Where the cameras stand: see Cameras"},
+    KeySpec{"camera.distance_m", number, "m", "0.252", k_distance, "", k_ring_sets,
+            "Distance from camera.target"},
+    KeySpec{
+        "camera.normalise", boolean, "", "true", k_any, "", R"(camera.set = "half-dodecahedron")",
+        "true: every camera at distance_m; false: the table's vectors times distance_m / 1.732"},
+    KeySpec{"camera.positions", point_list, "m", "", k_coordinate, "", R"(camera.set = "list")",
+            "Camera positions in the world"},
+    KeySpec{"camera.count", integer, "", "12", between(1, 100000), "", k_counted_sets,
+            "Number of views"},
+    KeySpec{"camera.elevation_deg", number, "degree", "30", between(-90, 90), "",
+            R"(camera.set = "orbit")",
+            "Height of the circle above the horizon, seen from the target"},
+    KeySpec{"camera.azimuth_deg", number, "degree", "0", between(-360, 360), "", k_counted_sets,
+            "Azimuth of view 0, counter-clockwise from +X seen from above"},
+    KeySpec{"camera.target", point, "m", "[0, 0, 0]", k_coordinate, "", "",
+            "The point every camera looks at"},
+    KeySpec{"camera.views", integer_list, "", "[]", k_any, "", "",
+            "Use only these views of the set, by number from 0; the names stay. []: all"},
+    KeySpec{"camera.fov_deg",
+            number,
+            "degree",
+            "49",
+            {0, 180, true, true},
+            "",
+            "",
+            "Full angle of view over the longer side of the picture"},
+    KeySpec{"camera.lens_radius_m", number, "m", "0", between(0, k_far_m), "", "",
+            "Radius of the thin lens; 0 is a pinhole, sharp everywhere"},
+    KeySpec{"camera.focus", choice, "", "\"origin\"", k_any, R"("origin" | "target" | "distance")",
+            "",
+            "What is in focus: the plane through the origin, through the target, or at "
+            "focus_distance_m"},
+    KeySpec{"camera.focus_distance_m", number, "m", "", k_distance, "",
+            R"(camera.focus = "distance")",
+            "Distance of the plane in focus along the viewing axis; must be given with focus = "
+            "\"distance\""},
+
+    KeySpec{"engine.width", integer, "pixel", "512", between(1, 16384), "", "",
+            "Width of the picture"},
+    KeySpec{"engine.height", integer, "pixel", "512", between(1, 16384), "", "",
+            "Height of the picture"},
+    KeySpec{"engine.spp", integer, "", "64", between(1, 1 << 24), "", "", "Samples a pixel"},
+    KeySpec{"engine.depth_total", integer, "", "6", between(1, 255), "", "",
+            "Longest path: vertices after the camera"},
+    KeySpec{"engine.depth_diffuse", integer, "", "4", between(0, 255), "", "",
+            "Most diffuse bounces of a path"},
+    KeySpec{"engine.depth_glossy", integer, "", "4", between(0, 255), "", "",
+            "Most glossy bounces of a path"},
+    KeySpec{"engine.depth_specular", integer, "", "6", between(0, 255), "", "",
+            "Most mirror and glass bounces of a path"},
+    KeySpec{"engine.roulette_depth", integer, "", "3", between(0, 255), "", "",
+            "First vertex at which Russian roulette may end a path"},
+    KeySpec{"engine.roulette_cap", number, "", "0.5", between(0.001, 1), "", "",
+            "Least probability that a path survives it"},
+    KeySpec{"engine.filter_width", number, "pixel", "3", between(0, 16), "", "",
+            "Full width of the Blackman-Harris pixel filter; 0 is a box of one pixel"},
+    KeySpec{"engine.math", choice, "", "\"strict\"", k_any, R"("strict" | "fast")", "",
+            "\"strict\": the same bits on every device; \"fast\": for previews"},
+
+    KeySpec{"outputs.image", choice, "", "\"png\"", k_any, "\"png\"", "",
+            "Format of the pictures: 8 bit RGB, images/MODEL/VIEW.png"},
+    KeySpec{"outputs.mask", boolean, "", "true", k_any, "", "",
+            "Write VIEW.mask.png: white where the model is seen, else black"},
+    KeySpec{"outputs.depth", choice, "", "false", k_any, R"("exr" | false)", "",
+            "Write VIEW.depth.exr: planar z in metres"},
+    KeySpec{"outputs.tone_map", choice, "", "\"environment\"", k_any,
+            R"("environment" | "linear" | "reinhard02" | "autolinear")", "",
+            "How radiance becomes 8 bits: as each environment says, or this for all"},
+    KeySpec{"outputs.tone_map_scale", number, "", "1", k_factor, "",
+            R"(outputs.tone_map = "linear")", "Factor on the radiance"},
+    KeySpec{"outputs.tone_map_prescale", number, "", "1", k_factor, "", k_reinhard,
+            "Factor before the curve"},
+    KeySpec{"outputs.tone_map_postscale", number, "", "1.2", k_factor, "", k_reinhard,
+            "Factor behind the curve"},
+    KeySpec{"outputs.tone_map_burn", number, "", "3.75", k_factor, "", k_reinhard,
+            "Where highlights burn out"},
+    KeySpec{"outputs.tone_map_gamma", number, "", "2.2", between(0.1, 10), "",
+            R"(outputs.tone_map = "linear" | "reinhard02" | "autolinear")",
+            "Pictures hold radiance^(1/gamma)"},
+    KeySpec{"outputs.keep_film", boolean, "", "true", k_any, "", "",
+            "Keep the traced film in the store, so that another tone map needs no tracing; costs "
+            "12 bytes a pixel before compression"},
+};
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j)
+    row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+std::string_view last_part(std::string_view name) {
+  return name.substr(name.rfind('.') + 1);
+}
+
+}  // namespace
+
+bool KeyRange::contains(double value) const {
+  if (!std::isfinite(value)) return false;
+  return (open_least ? value > least : value >= least) &&
+         (open_most ? value < most : value <= most);
+}
+
+std::string KeyRange::text() const {
+  if (std::isinf(least) && std::isinf(most)) return "";
+  if (std::isinf(most)) return fmt::format("{} {}", open_least ? ">" : ">=", least);
+  return fmt::format("in {}{}, {}{}", open_least ? '(' : '[', least, most, open_most ? ')' : ']');
+}
+
+std::span<const KeySpec> recipe_keys() {
+  return k_keys;
+}
+
+const KeySpec* find_key(std::string_view name) {
+  const auto at = std::find_if(k_keys.begin(), k_keys.end(),
+                               [&](const KeySpec& key) { return key.name == name; });
+  return at == k_keys.end() ? nullptr : &*at;
+}
+
+bool is_choice(std::string_view choices, std::string_view literal) {
+  while (!choices.empty()) {
+    const std::size_t end = choices.find(" | ");
+    if (choices.substr(0, end) == literal) return true;
+    choices.remove_prefix(end == choices.npos ? choices.size() : end + 3);
+  }
+  return false;
+}
+
+std::string_view nearest_key(std::string_view unknown) {
+  std::string_view nearest;
+  std::size_t least = 3;  // two slips of the finger
+  for (const KeySpec& key : k_keys) {
+    const std::size_t distance = edit_distance(unknown, key.name);
+    if (distance < least) {
+      least = distance;
+      nearest = key.name;
+    }
+  }
+  if (!nearest.empty()) return nearest;
+  // The right key in the wrong section, or without its unit ("fov").
+  for (const KeySpec& key : k_keys) {
+    const std::string_view own = last_part(unknown), known = last_part(key.name);
+    if (own == known || (own.size() >= 3 && known.starts_with(own) && known[own.size()] == '_'))
+      return key.name;
+  }
+  return {};
+}
+
+}  // namespace ds

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace ds {
+
+enum class KeyType {
+  text,
+  name,  ///< a file name: letters, digits and . _ - only, no dot in front
+  path,  ///< of a file or folder
+  path_list,
+  choice,  ///< one of KeySpec::choices
+  boolean,
+  integer,
+  integer_list,  ///< of counts
+  number,        ///< an integer is one too
+  point,         ///< three numbers
+  point_list,
+};
+
+struct KeyRange {
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+  bool open_least = false, open_most = false;  ///< the bound itself is outside
+
+  bool contains(double value) const;  ///< false for NaN and infinities
+  std::string text() const;           ///< "(0, 180)", ">= 0", "" where everything finite is inside
+};
+
+/// One key of a recipe. The table of these is what the reader checks against and what
+/// recipes/README.md's reference is made from, so a key has one description.
+struct KeySpec {
+  std::string_view name;  ///< "camera.fov_deg"
+  KeyType type;
+  std::string_view unit;           ///< "m", "degree", "" where there is none
+  std::string_view default_value;  ///< TOML; "" where there is none; "(...)": in words
+  KeyRange range;                  ///< of integers, numbers and each number of a point
+  std::string_view
+      choices;  ///< TOML literals separated by " | ": allowed beside (choice: instead of) the type
+  std::string_view
+      only_with;  ///< "camera.set = \"orbit\" | ...": without effect, and so an error, otherwise
+  std::string_view help;
+
+  bool has_default() const { return !default_value.empty() && default_value.front() != '('; }
+};
+
+/// Every key, by section, in the order of the reference.
+std::span<const KeySpec> recipe_keys();
+/// nullptr for no key of that name.
+const KeySpec* find_key(std::string_view name);
+
+/// "a string", "an integer in [1, 16384]", "\"y\" or \"z\"": what a value must be.
+std::string wanted_text(const KeySpec& key);
+/// Whether a literal (as to_toml writes it) is one of " | "-separated ones.
+bool is_choice(std::string_view choices, std::string_view literal);
+
+/// The known name that looks most like the unknown one, or "" where none does.
+std::string_view nearest_key(std::string_view unknown);
+
+/// The reference of recipes/README.md: a Markdown table a section.
+std::string recipe_reference();
+
+}  // namespace ds

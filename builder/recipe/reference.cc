@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/recipe/keys.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+
+namespace ds {
+namespace {
+
+std::string_view type_text(KeyType type) {
+  switch (type) {
+    case KeyType::text:
+      return "a string";
+    case KeyType::name:
+      return "a string of letters, digits and . _ - that starts with no dot";
+    case KeyType::path:
+      return "a path (a string)";
+    case KeyType::path_list:
+      return "a list of paths (strings)";
+    case KeyType::choice:
+      return "";
+    case KeyType::boolean:
+      return "true or false";
+    case KeyType::integer:
+      return "an integer";
+    case KeyType::integer_list:
+      return "a list of integers >= 0";
+    case KeyType::number:
+      return "a number";
+    case KeyType::point:
+      return "a list of three numbers";
+    case KeyType::point_list:
+      return "a list of lists of three numbers";
+  }
+  return "";
+}
+
+std::string replace_all(std::string text, std::string_view from, std::string_view to) {
+  for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+/// Literals in Markdown: each in code, "or" between.
+std::string literals(std::string_view choices) {
+  return choices.empty() ? "" : "`" + replace_all(std::string(choices), " | ", "` or `") + "`";
+}
+
+std::string type_cell(const KeySpec& key) {
+  std::string cell(key.type == KeyType::choice ? literals(key.choices) : type_text(key.type));
+  if (const std::string range = key.range.text(); !range.empty()) cell += " " + range;
+  if (key.type != KeyType::choice && !key.choices.empty()) cell += " or " + literals(key.choices);
+  return cell;
+}
+
+std::string default_cell(const KeySpec& key) {
+  if (key.default_value.empty()) return "none";
+  if (key.has_default()) return "`" + std::string(key.default_value) + "`";
+  return std::string(key.default_value.substr(1, key.default_value.size() - 2));
+}
+
+std::string help_cell(const KeySpec& key) {
+  std::string cell(key.help);
+  if (!key.only_with.empty()) {
+    const std::size_t equals = key.only_with.find(" = ");
+    cell += fmt::format(". Only with `{}` = {}", key.only_with.substr(0, equals),
+                        literals(key.only_with.substr(equals + 3)));
+  }
+  return cell;
+}
+
+}  // namespace
+
+std::string wanted_text(const KeySpec& key) {
+  std::string wanted(type_text(key.type));
+  if (const std::string range = key.range.text(); !range.empty()) wanted += " " + range;
+  const std::string choices = replace_all(std::string(key.choices), " | ", " or ");
+  if (!wanted.empty() && !choices.empty()) wanted += " or ";
+  return wanted + choices;
+}
+
+std::string recipe_reference() {
+  std::string text;
+  std::string_view section;
+  for (const KeySpec& key : recipe_keys()) {
+    const std::string_view own = key.name.substr(0, key.name.find('.'));
+    if (own != section) {
+      section = own;
+      text += fmt::format(
+          "{}### [{}]\n\n| key | type and range | unit | default | what it does |\n"
+          "| --- | --- | --- | --- | --- |\n",
+          text.empty() ? "" : "\n", section);
+    }
+    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.name.substr(own.size() + 1),
+                        type_cell(key), key.unit, default_cell(key), help_cell(key));
+  }
+  return text;
+}
+
+}  // namespace ds

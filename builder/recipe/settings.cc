@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/recipe/settings.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_name(std::string_view text) {
+  constexpr std::string_view k_allowed =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
+  return !text.empty() && text.front() != '.' && text.find_first_not_of(k_allowed) == text.npos;
+}
+
+bool is_point(const KeySpec& key, const RecipeValue& value) {
+  const auto* list = value.array();
+  return list != nullptr && list->size() == 3 &&
+         std::all_of(list->begin(), list->end(), [&](const RecipeValue& v) {
+           return v.is_number() && key.range.contains(v.number());
+         });
+}
+
+/// The part of `value` that is not as its key wants: an element of a list, or itself; nullptr where
+/// all is well.
+template <typename Fits>
+const RecipeValue* first_unfit(const RecipeValue& value, Fits fits) {
+  if (value.array() == nullptr) return &value;
+  for (const RecipeValue& element : *value.array()) {
+    if (!fits(element)) return &element;
+  }
+  return nullptr;
+}
+
+const RecipeValue* unfit_part(const KeySpec& key, const RecipeValue& value) {
+  if (is_choice(key.choices, to_toml(value))) return nullptr;
+  const auto all_or_nothing = [&](bool fits) { return fits ? nullptr : &value; };
+  switch (key.type) {
+    case KeyType::text:
+    case KeyType::path:
+      return all_or_nothing(value.text() != nullptr);
+    case KeyType::name:
+      return all_or_nothing(value.text() != nullptr && is_name(*value.text()));
+    case KeyType::choice:
+      return &value;
+    case KeyType::boolean:
+      return all_or_nothing(value.boolean() != nullptr);
+    case KeyType::integer:
+      return all_or_nothing(value.integer() != nullptr && key.range.contains(value.number()));
+    case KeyType::number:
+      return all_or_nothing(value.is_number() && key.range.contains(value.number()));
+    case KeyType::path_list:
+      return first_unfit(
+          value, [](const RecipeValue& v) { return v.text() != nullptr && !v.text()->empty(); });
+    case KeyType::integer_list:
+      return first_unfit(
+          value, [](const RecipeValue& v) { return v.integer() != nullptr && *v.integer() >= 0; });
+    case KeyType::point:
+      return all_or_nothing(is_point(key, value));
+    case KeyType::point_list:
+      return first_unfit(value, [&](const RecipeValue& v) { return is_point(key, v); });
+  }
+  return &value;
+}
+
+std::string found_text(const RecipeValue& value) {
+  std::string text = to_toml(value);
+  return text.size() <= 80 ? text : text.substr(0, 77) + "...";
+}
+
+/// "" and [] mean no path, so that --set can take one away.
+bool is_no_path(const KeySpec& key, const RecipeValue& value) {
+  return (key.type == KeyType::path && value.text() != nullptr && value.text()->empty()) ||
+         (key.type == KeyType::path_list && value.array() != nullptr && value.array()->empty());
+}
+
+bool is_section(std::string_view name) {
+  const auto keys = recipe_keys();
+  return std::any_of(keys.begin(), keys.end(), [&](const KeySpec& key) {
+    return key.name.size() > name.size() && key.name.starts_with(name) &&
+           key.name[name.size()] == '.';
+  });
+}
+
+}  // namespace
+
+bool fits(const KeySpec& key, const RecipeValue& value) {
+  return unfit_part(key, value) == nullptr;
+}
+
+Settings::Settings(const fs::path& file, RecipeValue::Table tree, Diagnostics& diagnostics)
+    : file_(file.string()), folder_(fs::absolute(file).parent_path()), diagnostics_(diagnostics) {
+  for (const KeySpec& key : recipe_keys()) {
+    if (key.has_default()) defaults_.emplace(key.name, parse_value(key.default_value));
+  }
+  std::vector<std::pair<std::string, RecipeValue>> found;
+  collect("", tree, found);
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
+    const auto order = [](const RecipeValue& v) {
+      return std::tuple(v.from_set, v.place.line, v.place.column);
+    };
+    return order(a.second) < order(b.second);
+  });
+  for (auto& [name, value] : found)
+    check(name, std::move(value));
+  check_effects();
+}
+
+/// Flattens the tree to keys of the table and to what is none.
+void Settings::collect(const std::string& prefix, RecipeValue::Table& table,
+                       std::vector<std::pair<std::string, RecipeValue>>& found) {
+  for (auto& [part, value] : table) {
+    const std::string name = prefix.empty() ? part : prefix + "." + part;
+    // An unknown table too, so that its keys can be compared with known ones; an empty one stays to
+    // be reported.
+    const bool unknown = find_key(name) == nullptr && !is_section(name);
+    if (value.table() != nullptr && (is_section(name) || (unknown && !value.table()->empty()))) {
+      collect(name, *value.table(), found);
+    } else {
+      found.emplace_back(name, std::move(value));
+    }
+  }
+}
+
+void Settings::check(const std::string& name, RecipeValue value) {
+  const KeySpec* key = find_key(name);
+  if (key == nullptr) {
+    if (is_section(name)) {
+      complain(value, name, fmt::format("must be a table of keys, got {}", found_text(value)));
+      return;
+    }
+    const std::string_view nearest = nearest_key(name);
+    complain(value, name,
+             nearest.empty() ? "is no key of a recipe"
+                             : fmt::format("is no key of a recipe, did you mean {}?", nearest));
+    return;
+  }
+  if (const RecipeValue* unfit = unfit_part(*key, value)) {
+    complain(*unfit, name,
+             fmt::format("must be {}, got {}", wanted_text(*key), found_text(*unfit)));
+    wrong_.emplace(name, std::move(value));
+    return;
+  }
+  if (!is_no_path(*key, value)) values_.emplace(name, std::move(value));
+}
+
+/// A key that nothing will look at is an error, unless --set has just chosen something else than
+/// the recipe did.
+void Settings::check_effects() {
+  std::vector<std::string_view> idle;
+  for (const KeySpec& key : recipe_keys()) {
+    const auto value = values_.find(key.name);
+    if (value == values_.end() || applies(key)) continue;
+    const std::string_view chooser = key.only_with.substr(0, key.only_with.find(" = "));
+    if (wrong_.contains(chooser)) continue;
+    if (value->second.from_set || !given_by_set(chooser)) {
+      complain(value->second, key.name,
+               fmt::format("has no effect with {} = {}, only with {}", chooser, literal(chooser),
+                           key.only_with));
+    }
+    idle.push_back(key.name);
+  }
+  for (const std::string_view key : idle)
+    unset(key);
+}
+
+bool Settings::applies(const KeySpec& key) const {
+  if (key.only_with.empty()) return true;
+  const std::size_t equals = key.only_with.find(" = ");
+  return is_choice(key.only_with.substr(equals + 3), literal(key.only_with.substr(0, equals)));
+}
+
+bool Settings::given_by_set(std::string_view key) const {
+  const auto right = values_.find(key);
+  const auto wrong = wrong_.find(key);
+  return (right != values_.end() && right->second.from_set) ||
+         (wrong != wrong_.end() && wrong->second.from_set);
+}
+
+const RecipeValue* Settings::find(std::string_view key) const {
+  DS_ASSERT(find_key(key) != nullptr);
+  if (const auto at = values_.find(key); at != values_.end()) return &at->second;
+  const auto at = defaults_.find(key);
+  return at == defaults_.end() ? nullptr : &at->second;
+}
+
+void Settings::unset(std::string_view key) {
+  if (const auto at = values_.find(key); at != values_.end()) values_.erase(at);
+  if (const auto at = wrong_.find(key); at != wrong_.end()) wrong_.erase(at);
+}
+
+const std::string& Settings::text(std::string_view key) const {
+  const RecipeValue* value = find(key);
+  DS_ASSERT(value != nullptr && value->text() != nullptr);
+  return *value->text();
+}
+
+double Settings::number(std::string_view key) const {
+  const RecipeValue* value = find(key);
+  DS_ASSERT(value != nullptr && value->is_number());
+  return value->number();
+}
+
+int Settings::integer(std::string_view key) const {
+  const RecipeValue* value = find(key);
+  DS_ASSERT(value != nullptr && value->integer() != nullptr);
+  return static_cast<int>(*value->integer());
+}
+
+bool Settings::boolean(std::string_view key) const {
+  const RecipeValue* value = find(key);
+  DS_ASSERT(value != nullptr && value->boolean() != nullptr);
+  return *value->boolean();
+}
+
+std::string Settings::literal(std::string_view key) const {
+  const RecipeValue* value = find(key);
+  DS_ASSERT(value != nullptr);
+  return to_toml(*value);
+}
+
+fs::path Settings::resolve(const RecipeValue& giver, const std::string& path) const {
+  const fs::path base = giver.from_set ? fs::current_path() : folder_;
+  const fs::path resolved = (base / path).lexically_normal();
+  return resolved.has_filename() ? resolved : resolved.parent_path();
+}
+
+void Settings::complain(const RecipeValue& value, std::string_view key,
+                        std::string_view message) const {
+  // "--set camera.fov_deg" names the key already.
+  const bool named = value.from_set && value.place.file.ends_with(" " + std::string(key));
+  if (named) {
+    diagnostics_.add(value.place, "{}", message);
+  } else {
+    diagnostics_.add(value.place, "{} {}", key, message);
+  }
+}
+
+void Settings::complain(std::string_view key, std::string_view message) const {
+  for (const auto* values : {&values_, &wrong_}) {
+    if (const auto at = values->find(key); at != values->end())
+      return complain(at->second, key, message);
+  }
+  diagnostics_.add({file_, 0, 0}, "{} {}", key, message);
+}
+
+}  // namespace ds

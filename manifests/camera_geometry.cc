@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "manifests/camera_geometry.h"
+
+#include "tracer/base/error.h"
+#include "tracer/base/vec.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ds {
+namespace {
+
+// Taylor series on [-45, 45] degrees; the first term left out is below 2^-60 there.
+double sin_near_zero(double degrees) {
+  const double x = degrees * (3.141592653589793238462643 / 180.0);
+  const double x2 = x * x;
+  double sum = 0;
+  for (int k = 17; k >= 3; k -= 2)
+    sum = (sum + 1.0) * (-x2 / static_cast<double>(k * (k - 1)));
+  return x + x * sum;
+}
+
+double cos_near_zero(double degrees) {
+  const double x = degrees * (3.141592653589793238462643 / 180.0);
+  const double x2 = x * x;
+  double sum = 0;
+  for (int k = 18; k >= 2; k -= 2)
+    sum = (sum + 1.0) * (-x2 / static_cast<double>(k * (k - 1)));
+  return 1.0 + sum;
+}
+
+}  // namespace
+
+double sin_deg(double degrees) {
+  const double quarter = std::nearbyint(degrees / 90.0);
+  const double rest =
+      degrees - quarter * 90.0;  // exact: both are multiples of the angle's last bit
+  switch (static_cast<long>(quarter) & 3) {
+    case 0:
+      return sin_near_zero(rest);
+    case 1:
+      return cos_near_zero(rest);
+    case 2:
+      return -sin_near_zero(rest);
+    default:
+      return -cos_near_zero(rest);
+  }
+}
+
+double cos_deg(double degrees) {
+  const double quarter = std::nearbyint(degrees / 90.0);
+  const double rest = degrees - quarter * 90.0;
+  switch (static_cast<long>(quarter) & 3) {
+    case 0:
+      return cos_near_zero(rest);
+    case 1:
+      return -sin_near_zero(rest);
+    case 2:
+      return -cos_near_zero(rest);
+    default:
+      return sin_near_zero(rest);
+  }
+}
+
+std::array<double, 9> camera_intrinsics(double fov_deg, int width, int height) {
+  const double half = std::max(width, height) / 2.0;
+  const double focal = half * cos_deg(fov_deg / 2) / sin_deg(fov_deg / 2);
+  return {focal, 0, width / 2.0, 0, focal, height / 2.0, 0, 0, 1};
+}
+
+std::array<double, 16> camera_pose(const Camera& camera) {
+  const Vec3d forward = normalized(camera.target - camera.position);
+  const Vec3d right = normalized(cross(forward, camera.up));
+  if (!(length(right) > 0.5)) {
+    fail(ErrorKind::recipe,
+         "a camera must look away from its position and not along its up vector, got position "
+         "({}, {}, {})",
+         camera.position.x, camera.position.y, camera.position.z);
+  }
+  const Vec3d down = cross(forward, right);
+  const Vec3d& p = camera.position;
+  return {right.x, down.x, forward.x, p.x, right.y, down.y, forward.y, p.y,
+          right.z, down.z, forward.z, p.z, 0,       0,      0,         1};
+}
+
+}  // namespace ds

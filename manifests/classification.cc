@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "manifests/classification.h"
+
+#include "tracer/base/error.h"
+#include "tracer/base/files.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <utility>
+
+namespace ds {
+namespace {
+
+std::vector<std::string_view> split_words(std::string_view line) {
+  constexpr std::string_view k_blank = " \t\r\v\f";
+  std::vector<std::string_view> words;
+  for (std::size_t at = line.find_first_not_of(k_blank); at != line.npos;) {
+    const std::size_t end = line.find_first_of(k_blank, at);
+    words.push_back(line.substr(at, end - at));
+    at = line.find_first_not_of(k_blank, end);
+  }
+  return words;
+}
+
+/// A count: decimal digits only, nothing where it is anything else or too large for an int.
+std::optional<int> parse_count(std::string_view word) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size() || value < 0) return std::nullopt;
+  return value;
+}
+
+/// Reads line by line. The number of words says what a line is (three: a class, one: a model), so a
+/// wrong count is one finding and the rest of the file is still read as it was meant.
+class Parser {
+ public:
+  explicit Parser(const std::string& file) : diagnostics_(ErrorKind::asset) { result_.file = file; }
+
+  Classification parse(std::string_view text) {
+    while (!text.empty()) {
+      const std::size_t end = text.find('\n');
+      ++line_;
+      if (const auto words = split_words(text.substr(0, end)); !words.empty()) read_line(words);
+      text.remove_prefix(end == text.npos ? text.size() : end + 1);
+    }
+    close_class();
+    check_totals();
+    diagnostics_.throw_if_any();
+    return std::move(result_);
+  }
+
+ private:
+  SourcePlace here() const { return {result_.file, line_, 0}; }
+
+  void read_line(const std::vector<std::string_view>& words) {
+    if (!magic_seen_) {
+      read_magic(words);
+    } else if (totals_line_ == 0) {
+      read_totals(words);
+    } else if (words.size() == 3) {
+      close_class();
+      open_class(words);
+    } else if (words.size() == 1) {
+      add_model(words[0]);
+    } else {
+      diagnostics_.add(here(),
+                       "must be a class (name parent count) or a model (one word), got {} words",
+                       words.size());
+    }
+  }
+
+  void read_magic(const std::vector<std::string_view>& words) {
+    magic_seen_ = true;
+    if (words.size() == 2 && words[0] == "PSB" && words[1] == "1") return;
+    diagnostics_.add(here(), "must be \"PSB 1\", got \"{}\"", fmt::join(words, " "));
+    diagnostics_.throw_if_any();  // another kind of file: what follows would be noise
+  }
+
+  void read_totals(const std::vector<std::string_view>& words) {
+    totals_line_ = line_;
+    const auto classes = words.size() == 2 ? parse_count(words[0]) : std::nullopt;
+    const auto models = words.size() == 2 ? parse_count(words[1]) : std::nullopt;
+    if (classes && models) {
+      said_classes_ = *classes;
+      said_models_ = *models;
+    } else {
+      diagnostics_.add(here(), "must be the number of classes and of models, got \"{}\"",
+                       fmt::join(words, " "));
+    }
+  }
+
+  void open_class(const std::vector<std::string_view>& words) {
+    class_line_ = line_;
+    ModelClass added;
+    added.name = words[0];
+    check_name(added.name);
+    if (words[1] != "0") {
+      if (const auto parent = class_by_name_.find(words[1]); parent != class_by_name_.end()) {
+        added.parent = parent->second;
+      } else {
+        diagnostics_.add(here(), "class {}: the parent must be an earlier class or 0, got {}",
+                         added.name, words[1]);
+      }
+    }
+    said_in_class_ = parse_count(words[2]);
+    if (!said_in_class_) {
+      diagnostics_.add(here(), "class {}: the number of models must be a count, got {}", added.name,
+                       words[2]);
+    }
+    const int index = static_cast<int>(result_.classes.size());
+    if (!class_by_name_.try_emplace(added.name, index).second) {
+      diagnostics_.add(here(), "class {} stands twice", added.name);
+    }
+    result_.classes.push_back(std::move(added));
+  }
+
+  /// Names become parts of a path ("vehicle/car") and of folders in exported datasets.
+  void check_name(const std::string& name) {
+    if (name == "0" || name == "." || name == ".." || name.find('/') != name.npos) {
+      diagnostics_.add(here(), "a class name must hold no / and be none of 0 . .., got {}", name);
+    }
+  }
+
+  void add_model(std::string_view model) {
+    if (result_.classes.empty()) {
+      diagnostics_.add(here(), "model {} stands before the first class", model);
+      return;
+    }
+    ModelClass& owner = result_.classes.back();
+    const auto [first, is_new] = seen_.try_emplace(std::string(model), owner.name, line_);
+    if (!is_new) {
+      diagnostics_.add(here(), "model {} stands in class {} and already in class {} (line {})",
+                       model, owner.name, first->second.first, first->second.second);
+    }
+    owner.models.emplace_back(model);
+    owner.model_lines.push_back(line_);
+    ++result_.model_count;
+  }
+
+  void close_class() {
+    if (result_.classes.empty() || !said_in_class_) return;
+    const ModelClass& done = result_.classes.back();
+    if (done.models.size() != static_cast<std::size_t>(*said_in_class_)) {
+      diagnostics_.add({result_.file, class_line_, 0},
+                       "class {} must hold {} models as it says, found {}", done.name,
+                       *said_in_class_, done.models.size());
+    }
+  }
+
+  void check_totals() {
+    if (totals_line_ == 0) {
+      diagnostics_.add({result_.file, 0, 0},
+                       "must start with \"PSB 1\" and the number of classes and models, found "
+                       "the end of the file");
+      return;
+    }
+    const SourcePlace place{result_.file, totals_line_, 0};
+    if (said_classes_ && *said_classes_ != static_cast<int>(result_.classes.size())) {
+      diagnostics_.add(place, "must hold {} classes as it says, found {}", *said_classes_,
+                       result_.classes.size());
+    }
+    if (said_models_ && *said_models_ != result_.model_count) {
+      diagnostics_.add(place, "must hold {} models as it says, found {}", *said_models_,
+                       result_.model_count);
+    }
+  }
+
+  Classification result_;
+  Diagnostics diagnostics_;
+  int line_ = 0;
+  bool magic_seen_ = false;
+  int totals_line_ = 0;  // 0: not read yet
+  std::optional<int> said_classes_, said_models_;
+  int class_line_ = 0;
+  std::optional<int> said_in_class_;
+  std::map<std::string, int, std::less<>> class_by_name_;
+  std::map<std::string, std::pair<std::string, int>> seen_;  // model -> class and line
+};
+
+bool all_digits(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == text.npos;
+}
+
+void add_labels(const Classification& from, const char* split,
+                std::vector<std::pair<std::string, ModelLabel>>& labels) {
+  for (std::size_t i = 0; i < from.classes.size(); ++i) {
+    const std::string path = from.path(static_cast<int>(i));
+    for (const std::string& model : from.classes[i].models)
+      labels.push_back({model, {path, split}});
+  }
+}
+
+void check_disjoint(const Classification& train, const Classification& test) {
+  std::map<std::string_view, int> lines;
+  for (const ModelClass& c : train.classes) {
+    for (std::size_t i = 0; i < c.models.size(); ++i)
+      lines.emplace(c.models[i], c.model_lines[i]);
+  }
+  Diagnostics diagnostics(ErrorKind::asset);
+  for (const ModelClass& c : test.classes) {
+    for (std::size_t i = 0; i < c.models.size(); ++i) {
+      const auto other = lines.find(c.models[i]);
+      if (other == lines.end()) continue;
+      diagnostics.add({test.file, c.model_lines[i], 0},
+                      "model {} must not be in train and test, found in {}:{} too", c.models[i],
+                      train.file, other->second);
+    }
+  }
+  diagnostics.throw_if_any();
+}
+
+}  // namespace
+
+std::string Classification::path(int class_index) const {
+  std::string path;
+  for (int i = class_index; i >= 0; i = classes[static_cast<std::size_t>(i)].parent) {
+    const std::string& name = classes.at(static_cast<std::size_t>(i)).name;
+    path.insert(0, path.empty() ? name : name + "/");
+  }
+  return path;
+}
+
+int Classification::leaf_count() const {
+  return static_cast<int>(std::count_if(classes.begin(), classes.end(),
+                                        [](const ModelClass& c) { return !c.models.empty(); }));
+}
+
+Classification parse_classification(std::string_view text, const std::string& name) {
+  return Parser(name).parse(text);
+}
+
+Classification read_classification(const std::filesystem::path& file) {
+  return parse_classification(read_text_file(file), file.string());
+}
+
+Labels::Labels(const std::optional<Classification>& train,
+               const std::optional<Classification>& test) {
+  if (train && test) check_disjoint(*train, *test);
+  if (train) add_labels(*train, "train", sorted_);
+  if (test) add_labels(*test, "test", sorted_);
+  std::sort(sorted_.begin(), sorted_.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+}
+
+std::optional<std::size_t> Labels::index_of(std::string_view key) const {
+  const auto at =
+      std::lower_bound(sorted_.begin(), sorted_.end(), key,
+                       [](const auto& entry, std::string_view k) { return entry.first < k; });
+  if (at == sorted_.end() || at->first != key) return std::nullopt;
+  return static_cast<std::size_t>(at - sorted_.begin());
+}
+
+std::optional<std::size_t> Labels::find_index(std::string_view model_file_name) const {
+  if (const auto found = index_of(model_file_name)) return found;
+  const std::string_view stem = model_file_name.substr(0, model_file_name.rfind('.'));
+  if (const auto found = index_of(stem)) return found;
+  if (stem.starts_with('m') && all_digits(stem.substr(1))) return index_of(stem.substr(1));
+  return std::nullopt;
+}
+
+std::optional<ModelLabel> Labels::find(std::string_view model_file_name) const {
+  const auto index = find_index(model_file_name);
+  return index ? std::optional(sorted_[*index].second) : std::nullopt;
+}
+
+std::vector<std::string> class_paths(const std::optional<Classification>& train,
+                                     const std::optional<Classification>& test) {
+  std::vector<std::string> paths;
+  for (const auto* from : {&train, &test}) {
+    if (!*from) continue;
+    for (std::size_t i = 0; i < (*from)->classes.size(); ++i)
+      paths.push_back((*from)->path(static_cast<int>(i)));
+  }
+  std::sort(paths.begin(), paths.end());
+  paths.erase(std::unique(paths.begin(), paths.end()), paths.end());
+  return paths;
+}
+
+}  // namespace ds

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "manifests/json_text.h"
+#include "manifests/manifest.h"
+#include "tracer/base/error.h"
+#include "tracer/base/files.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+namespace ds {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+/// Takes the fields out of one JSON object; a missing one or one of another type is a finding and
+/// leaves the default.
+class Fields {
+ public:
+  Fields(const json& object, SourcePlace place, Diagnostics& diagnostics)
+      : object_(object), place_(std::move(place)), diagnostics_(diagnostics) {}
+
+  const json* find(const char* name) {
+    if (const auto at = object_.find(name); at != object_.end()) return &*at;
+    diagnostics_.add(place_, "{} must be there", name);
+    return nullptr;
+  }
+  void text(const char* name, std::string& to) {
+    const json* value = find(name);
+    if (value == nullptr) return;
+    if (value->is_string()) {
+      to = value->get<std::string>();
+    } else {
+      wrong(name, "a text", *value);
+    }
+  }
+  template <typename T>
+  void count(const char* name, T& to) {
+    const json* value = find(name);
+    if (value == nullptr) return;
+    if (value->is_number_unsigned() &&
+        value->get<std::uint64_t>() <= std::uint64_t(std::numeric_limits<T>::max())) {
+      to = value->get<T>();
+    } else {
+      wrong(name, "a count", *value);
+    }
+  }
+  void number(const char* name, double& to) {
+    const json* value = find(name);
+    if (value == nullptr) return;
+    if (value->is_number()) {
+      to = value->get<double>();
+    } else {
+      wrong(name, "a number", *value);
+    }
+  }
+  void hash(const char* name, Hash128& to) {
+    std::string hex;
+    text(name, hex);
+    if (const auto hash = Hash128::from_hex(hex)) {
+      to = *hash;
+    } else if (!hex.empty()) {
+      wrong(name, "32 hexadecimal digits", hex);
+    }
+  }
+  template <std::size_t N>
+  void matrix(const char* name, std::size_t columns, std::array<double, N>& to) {
+    const json* value = find(name);
+    if (value == nullptr) return;
+    if (!is_matrix(*value, N / columns, columns)) {
+      wrong(name, "rows of numbers", *value);
+      return;
+    }
+    for (std::size_t i = 0; i < N; ++i)
+      to[i] = (*value)[i / columns][i % columns].get<double>();
+  }
+  void wrong(const char* name, const char* wanted, const json& found) {
+    diagnostics_.add(place_, "{} must be {}, got {}", name, wanted,
+                     found.dump(-1, ' ', false, json::error_handler_t::replace));
+  }
+
+ private:
+  static bool is_matrix(const json& value, std::size_t rows, std::size_t columns) {
+    return value.is_array() && value.size() == rows &&
+           std::all_of(value.begin(), value.end(), [&](const json& row) {
+             return row.is_array() && row.size() == columns &&
+                    std::all_of(row.begin(), row.end(),
+                                [](const json& v) { return v.is_number(); });
+           });
+  }
+
+  const json& object_;
+  SourcePlace place_;
+  Diagnostics& diagnostics_;
+};
+
+/// Nothing (and a finding) where the text is no JSON object.
+std::optional<json> parse_object(const std::string& text, const SourcePlace& place,
+                                 Diagnostics& diagnostics) {
+  // No field is nested this deeply; what is gets dropped, since printing it in a finding would
+  // recurse.
+  const auto shallow = [](int depth, json::parse_event_t, json&) { return depth <= 32; };
+  try {
+    json value = json::parse(text, shallow);
+    if (value.is_object()) return value;
+    diagnostics.add(place, "must be a JSON object, got {}", value.type_name());
+  } catch (const json::exception& error) {
+    diagnostics.add(place, "must be a JSON object: {}", error.what());
+  }
+  return std::nullopt;
+}
+
+std::vector<FileRecord> files_from(const json& values, const SourcePlace& place,
+                                   Diagnostics& diagnostics) {
+  std::vector<FileRecord> files;
+  for (const json& value : values) {
+    Fields fields(value, place, diagnostics);
+    if (!value.is_object()) {
+      fields.wrong("files", "objects", value);
+      continue;
+    }
+    FileRecord& file = files.emplace_back();
+    fields.text("path", file.path);
+    fields.text("kind", file.kind);
+    fields.count("size_bytes", file.hashes.size_bytes);
+    fields.hash("xxh128", file.hashes.xxh128);
+    fields.text("sha256", file.hashes.sha256);
+    fields.hash("pixels_xxh128", file.pixels);
+  }
+  return files;
+}
+
+void read_parts(const json& value, const SourcePlace& place, Diagnostics& diagnostics,
+                ImageRecord& image) {
+  Fields parts(value, place, diagnostics);
+  if (!value.is_object()) {
+    parts.wrong("parts", "an object", value);
+    return;
+  }
+  static constexpr std::array k_names{"model", "material", "environment", "camera", "engine"};
+  for (std::size_t i = 0; i < k_names.size(); ++i)
+    parts.hash(k_names[i], image.parts[i]);
+}
+
+ImageRecord image_from(const std::string& line, const SourcePlace& place,
+                       Diagnostics& diagnostics) {
+  ImageRecord image;
+  const auto object = parse_object(line, place, diagnostics);
+  if (!object) return image;
+  Fields fields(*object, place, diagnostics);
+  fields.text("id", image.id);
+  fields.text("model", image.model);
+  fields.text("class_path", image.class_path);
+  fields.text("split", image.split);
+  fields.text("material", image.material);
+  fields.text("environment", image.environment);
+  fields.text("view", image.view);
+  if (const json* files = fields.find("files"))
+    image.files = files_from(*files, place, diagnostics);
+  fields.count("seed", image.seed);
+  fields.count("spp", image.spp);
+  fields.count("width", image.width);
+  fields.count("height", image.height);
+  fields.text("math", image.math);
+  fields.matrix("intrinsics", 3, image.intrinsics);
+  fields.matrix("camera_to_world", 4, image.camera_to_world);
+  fields.number("lens_radius_m", image.lens_radius_m);
+  fields.number("focus_distance_m", image.focus_distance_m);
+  fields.number("tone_map_scale", image.tone_map_scale);
+  fields.count("rejected_samples", image.rejected_samples);
+  fields.hash("render_key", image.render_key);
+  fields.hash("files_key", image.files_key);
+  if (const json* parts = fields.find("parts")) read_parts(*parts, place, diagnostics, image);
+  return image;
+}
+
+/// An object whose members are all of one kind, into a list of pairs.
+template <typename T, typename Read>
+void read_members(Fields& fields, const json& owner, const SourcePlace& place,
+                  Diagnostics& diagnostics, const char* name,
+                  std::vector<std::pair<std::string, T>>& to, Read read) {
+  if (fields.find(name) == nullptr) return;
+  const json& value = owner[name];
+  if (!value.is_object()) {
+    fields.wrong(name, "an object", value);
+    return;
+  }
+  Fields members(value, place, diagnostics);
+  for (const auto& [key, member] : value.items()) {
+    to.emplace_back(key, T{});
+    read(members, key.c_str(), to.back().second);
+  }
+}
+
+void read_class_paths(Fields& fields, std::vector<std::string>& to) {
+  const json* paths = fields.find("class_paths");
+  if (paths == nullptr) return;
+  const bool texts = paths->is_array() && std::all_of(paths->begin(), paths->end(),
+                                                      [](const json& p) { return p.is_string(); });
+  if (texts) {
+    to = paths->get<std::vector<std::string>>();
+  } else {
+    fields.wrong("class_paths", "a list of texts", *paths);
+  }
+}
+
+std::string read_manifest_file(const fs::path& file) {
+  if (!fs::is_regular_file(file))
+    fail(ErrorKind::asset, "{}: must be there: a dataset has a manifest", file.string());
+  return read_text_file(file);
+}
+
+}  // namespace
+
+ImageRecord image_from_json_line(const std::string& line, const std::string& file,
+                                 int line_number) {
+  Diagnostics diagnostics(ErrorKind::asset);
+  ImageRecord image = image_from(line, {file, line_number, 0}, diagnostics);
+  diagnostics.throw_if_any();
+  return image;
+}
+
+DatasetRecord dataset_from_json(const std::string& text, const std::string& file) {
+  Diagnostics diagnostics(ErrorKind::asset);
+  const SourcePlace place{file, 0, 0};
+  DatasetRecord dataset;
+  if (const auto object = parse_object(text, place, diagnostics)) {
+    Fields fields(*object, place, diagnostics);
+    int format = 0;
+    fields.count("format", format);
+    if (format != 0 && format != k_manifest_format) fields.wrong("format", "1", format);
+    fields.text("name", dataset.name);
+    fields.text("licence", dataset.licence);
+    fields.text("recipe", dataset.recipe_text);
+    fields.text("dsbuild_version", dataset.dsbuild_version);
+    fields.count("seed", dataset.seed);
+    read_class_paths(fields, dataset.class_paths);
+    read_members(fields, *object, place, diagnostics, "counts", dataset.counts,
+                 [](Fields& f, const char* name, std::uint64_t& to) { f.count(name, to); });
+    read_members(fields, *object, place, diagnostics, "licences", dataset.licences,
+                 [](Fields& f, const char* name, std::string& to) { f.text(name, to); });
+  }
+  diagnostics.throw_if_any();
+  return dataset;
+}
+
+std::vector<ImageRecord> read_images_manifest(const fs::path& folder) {
+  const fs::path file = folder / "manifest/images.jsonl";
+  const std::string text = read_manifest_file(file);
+  Diagnostics diagnostics(ErrorKind::asset);
+  std::vector<ImageRecord> images;
+  int line_number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text.find('\n', at);
+    const SourcePlace place{file.string(), ++line_number, 0};
+    if (end == text.npos) diagnostics.add(place, "must end in a line break: the file is cut off");
+    images.push_back(image_from(text.substr(at, end - at), place, diagnostics));
+    at = end == text.npos ? text.size() : end + 1;
+  }
+  diagnostics.throw_if_any();
+  return images;
+}
+
+DatasetRecord read_dataset_manifest(const fs::path& folder) {
+  const fs::path file = folder / "manifest/dataset.json";
+  return dataset_from_json(read_manifest_file(file), file.string());
+}
+
+}  // namespace ds

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/recipe/recipe.h"
+#include "tests/builder/recipe_folder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+namespace ds {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// model -> "class split" of its images.
+std::map<std::string, std::string> labels_of(const Recipe& recipe) {
+  std::map<std::string, std::string> labels;
+  for (const ImageSpec& image : expand(recipe))
+    labels[image.model_name] = image.class_path + " " + image.split;
+  return labels;
+}
+
+class RecipeClassesTest : public testing::Test {
+ protected:
+  RecipeClassesTest() {
+    folder_.add("train.cla", "PSB 1\n2 3\nthing 0 0\nvehicle thing 3\ncar\n12\n13\n");
+    folder_.add("test.cla", "PSB 1\n1 1\nplant 0 1\ntree.PLY\n");
+  }
+  static constexpr std::string_view k_both =
+      "classes.train = \"train.cla\"\nclasses.test = \"test.cla\"\n";
+
+  std::string both(std::string_view more) const { return std::string(k_both) + std::string(more); }
+
+  RecipeFolder folder_;
+};
+
+TEST_F(RecipeClassesTest, GiveClassAndSplitAndAreCounted) {
+  const Recipe recipe = folder_.read(k_both);
+  const auto labels = labels_of(recipe);
+  EXPECT_EQ(labels.at("car.ply"), "thing/vehicle train");
+  EXPECT_EQ(labels.at("tree.PLY"), "plant test");
+  EXPECT_EQ(labels.at("mug.off"), " ");
+  EXPECT_EQ(recipe.coverage.listed, 4u);
+  EXPECT_EQ(recipe.coverage.missing, 2u);
+  EXPECT_EQ(recipe.coverage.unlisted, 1u);
+  EXPECT_THAT(recipe.class_paths, ElementsAre("plant", "thing", "thing/vehicle"));
+}
+
+TEST_F(RecipeClassesTest, MayBeUnsetByTheEmptyPath) {
+  const Recipe recipe = folder_.read(k_both, {"classes.train=\"\""});
+  EXPECT_EQ(recipe.train_classes, std::nullopt);
+  EXPECT_EQ(labels_of(recipe).at("car.ply"), " ");
+  EXPECT_EQ(labels_of(recipe).at("tree.PLY"), "plant test");
+}
+
+TEST_F(RecipeClassesTest, MayBeStrictAboutDifferences) {
+  EXPECT_EQ(folder_.findings(both("classes.missing = \"error\"")),
+            "r.toml:6:19: classes.missing = \"error\" wants a file for every model listed, found "
+            "none for 2 of 4");
+  EXPECT_EQ(folder_.findings(both("classes.unlisted = \"error\"")),
+            "r.toml:6:20: classes.unlisted = \"error\" wants every model in a class file, found 1 "
+            "in none: mug.off");
+  const Recipe recipe = folder_.read(both("classes.unlisted = \"skip\""));
+  EXPECT_EQ(recipe.models.size(), 2u);
+  EXPECT_EQ(recipe.coverage.unlisted, 1u);
+  EXPECT_THAT(
+      folder_.findings("classes.test = \"test.cla\"\nclasses.unlisted = \"skip\"",
+                       {"models.files=[\"" + (folder_.path() / "models/car.ply").string() + "\"]"}),
+      HasSubstr("leaves no model"));
+}
+
+TEST_F(RecipeClassesTest, ReportTheirOwnFindingsAmongTheRecipes) {
+  folder_.add("test.cla", "PSB 1\n1 2\nplant 0 2\ntree\n");
+  const std::string what = folder_.findings(both("engine.spp = 0"));
+  EXPECT_THAT(what, HasSubstr("r.toml:6:14: engine.spp must be"));
+  EXPECT_THAT(what, HasSubstr("test.cla:3: class plant must hold 2 models as it says, found 1"));
+  folder_.add("test.cla", "PSB 1\n1 1\nplant 0 1\n13\n");
+  EXPECT_EQ(folder_.findings(k_both),
+            "test.cla:4: model 13 must not be in train and test, found in train.cla:7 too");
+  EXPECT_EQ(folder_.findings("classes.train = \"none.cla\""),
+            "r.toml:4:17: classes.train must name a file, found none at none.cla");
+}
+
+TEST_F(RecipeClassesTest, MayLieBesideTheModels) {
+  constexpr std::string_view k_beside =
+      "materials.dir = \"materials\"\nenvironments.dir = \"places\"\nclasses.train = "
+      "\"{models.dir}/../train.cla\"\n";
+  const std::string models = (folder_.path() / "models").string();
+  EXPECT_EQ(folder_.read_whole(k_beside, {"models.dir=" + models}).train_classes,
+            folder_.path() / "train.cla");
+  // No folder of models, so nothing lies beside it.
+  const Recipe recipe = folder_.read_whole(k_beside, {"models.files=[\"" + models + "/car.ply\"]"});
+  EXPECT_EQ(recipe.train_classes, std::nullopt);
+  EXPECT_EQ(labels_of(recipe).at("car.ply"), " ");
+}
+
+TEST_F(RecipeClassesTest, ExcludeASplitByHash) {
+  EXPECT_EQ(folder_.findings(both("classes.split.test = 0.5")),
+            "r.toml:6:22: classes.split.test must not be given together with classes.train or "
+            "classes.test");
+  EXPECT_EQ(folder_.findings("classes.split = { test = 1.5, by = \"class\" }"),
+            "r.toml:4:26: classes.split.test must be a number in [0, 1], got 1.5\n"
+            "r.toml:4:36: classes.split.by must be \"model\", got \"class\"");
+}
+
+}  // namespace
+}  // namespace ds

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tracer/base/error.h"
+#include "tracer/scene/mesh.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace ds {
+
+inline void check_mesh(const Mesh& mesh) {
+  DS_ASSERT(!mesh.triangles.empty());
+  DS_ASSERT(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
+  DS_ASSERT(mesh.uvs.empty() || mesh.uvs.size() == mesh.positions.size());
+  for (const auto& t : mesh.triangles)
+    for (const std::uint32_t v : t)
+      DS_ASSERT(v < mesh.positions.size());
+  for (const Vec3 p : mesh.positions)
+    DS_ASSERT(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+  for (const Vec3 n : mesh.normals)
+    DS_ASSERT(std::isfinite(n.x) && std::isfinite(n.y) && std::isfinite(n.z));
+}
+
+/// Reads and normalises: a sound mesh or an Error(asset), nothing else.
+inline void fuzz_model(const std::string& bytes) {
+  try {
+    const Model model = parse_model(bytes, "fuzz");
+    check_mesh(model.mesh);
+    for (const Normals normals : {Normals::smooth, Normals::flat, Normals::keep}) {
+      NormaliseOptions options;
+      options.normals = normals;
+      if (normals != Normals::keep || model.report.has_normals)
+        check_mesh(normalise(model.mesh, options));
+    }
+  } catch (const Error& error) {
+    DS_ASSERT(error.kind() == ErrorKind::asset);
+  }
+}
+
+}  // namespace ds

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "manifests/manifest.h"
+
+#include "manifests/json_text.h"
+#include "tracer/base/error.h"
+#include "tracer/base/files.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+FileRecord file_record(const fs::path& folder, const std::string& path, const std::string& kind) {
+  return {path, kind, hash_file(folder / path), hash_text("pixels of " + path)};
+}
+
+/// A folder with two images of one model, as a build leaves it.
+class ManifestTest : public testing::Test {
+ protected:
+  ManifestTest() {
+    for (const char* id : {"mug.ply/10", "mug.ply/2"}) {
+      const std::string stem = std::string("images/") + id;
+      write_file_atomic(folder_ / (stem + ".png"), "picture " + stem);
+      write_file_atomic(folder_ / (stem + ".mask.png"), "mask " + stem);
+      ImageRecord image;
+      image.id = id;
+      image.model = "mug.ply";
+      image.class_path = "vessel/mug";
+      image.split = "train";
+      image.material = "red-plastic";
+      image.environment = "studio";
+      image.view = image.id.substr(8);
+      image.files = {file_record(folder_, stem + ".png", "image"),
+                     file_record(folder_, stem + ".mask.png", "mask")};
+      image.seed = (std::uint64_t{1} << 53) - 1;
+      image.spp = 64;
+      image.width = 256;
+      image.height = 128;
+      image.math = "strict";
+      image.intrinsics = camera_intrinsics(49, 256, 128);
+      image.camera_to_world = camera_pose(Camera{});
+      image.lens_radius_m = 0.002;
+      image.focus_distance_m = 0.1 + 0.2;
+      image.tone_map_scale = 1.0 / 3;
+      image.rejected_samples = 3;
+      image.render_key = hash_text("key");
+      image.files_key = hash_text("files");
+      for (std::size_t i = 0; i < 5; ++i)
+        image.parts[i] = hash_text("part " + std::to_string(i));
+      images_.push_back(image);
+    }
+    dataset_.name = "mugs";
+    dataset_.licence = "CC0-1.0";
+    dataset_.recipe_text = "dataset.name = \"mugs\"\n";
+    dataset_.dsbuild_version = "0.1.0";
+    dataset_.seed = 7;
+    dataset_.class_paths = {"vessel", "vessel/mug"};
+    dataset_.counts = {{"images", 2}, {"models", 1}};
+    dataset_.licences = {{"studio", "CC0-1.0"}};
+  }
+
+  std::string read(const std::string& path) const { return read_text_file(folder_ / path); }
+  fs::path path() const { return folder_; }
+  int check_with_xxhsum() const {
+    const std::string command = "cd '" + folder_.string() +
+                                "' && xxhsum --status -c manifest/checksums.xxh128 >/dev/null 2>&1";
+    return std::system(command.c_str());
+  }
+
+  TemporaryFolder temporary_;
+  fs::path folder_ = temporary_.path();
+  DatasetRecord dataset_;
+  std::vector<ImageRecord> images_;
+};
+
+TEST_F(ManifestTest, ReadsBackWhatWasWritten) {
+  write_manifest(folder_, dataset_, images_);
+  const auto images = read_images_manifest(folder_);
+  ASSERT_EQ(images.size(), 2u);
+  EXPECT_EQ(images[0].id, "mug.ply/10");  // by the bytes of the id
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(to_json_line(images[i]), to_json_line(images_[i]));
+    EXPECT_EQ(images[i].seed, images_[i].seed);
+    EXPECT_EQ(images[i].focus_distance_m, 0.1 + 0.2);
+    EXPECT_EQ(images[i].tone_map_scale, 1.0 / 3);
+    EXPECT_EQ(images[i].intrinsics, images_[i].intrinsics);
+    EXPECT_EQ(images[i].camera_to_world, images_[i].camera_to_world);
+    EXPECT_EQ(images[i].parts, images_[i].parts);
+    ASSERT_EQ(images[i].files.size(), 2u);
+    EXPECT_EQ(images[i].files[1].hashes.sha256, images_[i].files[1].hashes.sha256);
+    EXPECT_EQ(images[i].files[1].hashes.size_bytes, images_[i].files[1].hashes.size_bytes);
+    EXPECT_EQ(images[i].files[1].pixels, images_[i].files[1].pixels);
+  }
+  EXPECT_EQ(to_json(read_dataset_manifest(folder_)), to_json(dataset_));
+}
+
+TEST_F(ManifestTest, DoesNotDependOnTheOrderOfTheImages) {
+  write_manifest(folder_, dataset_, images_);
+  const std::string lines = read("manifest/images.jsonl"), sums = read("manifest/checksums.xxh128");
+  std::swap(images_[0], images_[1]);
+  write_manifest(folder_, dataset_, images_);
+  EXPECT_EQ(read("manifest/images.jsonl"), lines);
+  EXPECT_EQ(read("manifest/checksums.xxh128"), sums);
+}
+
+TEST_F(ManifestTest, LinesAreCanonical) {
+  const std::string line = to_json_line(images_[0]);
+  EXPECT_THAT(line, HasSubstr("\"focus_distance_m\":0.30000000000000004,"));
+  EXPECT_THAT(line, HasSubstr("\"seed\":9007199254740991,"));
+  EXPECT_THAT(line,
+              HasSubstr("\"camera_to_world\":[[0,0,-1,0.252],[1,0,0,0],[0,-1,0,0],[0,0,0,1]]"));
+  EXPECT_THAT(line, HasSubstr("\"tone_map_scale\":0.3333333333333333,"));
+  EXPECT_EQ(line.find(' '), line.npos);
+  EXPECT_TRUE(line.starts_with("{\"camera_convention\":\"opencv\",\"camera_to_world\":"));
+  // Another JSON library's idea of sorted keys without spaces agrees but for the spelling of
+  // numbers.
+  const auto parsed = nlohmann::json::parse(line);
+  EXPECT_EQ(canonical_json(parsed), line);
+}
+
+TEST_F(ManifestTest, ChecksumsAreWhatXxhsumReads) {
+  if (std::system("xxhsum --version >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "xxhsum is not installed";
+  write_manifest(folder_, dataset_, images_);
+  EXPECT_EQ(check_with_xxhsum(), 0);
+  // Each file that the manifest covers, itself included.
+  for (const char* path : {"images/mug.ply/2.png", "images/mug.ply/10.mask.png",
+                           "manifest/images.jsonl", "manifest/dataset.json"}) {
+    const std::string text = read(path);
+    std::ofstream(folder_ / path, std::ios::binary) << text << "x";
+    EXPECT_NE(check_with_xxhsum(), 0) << path;
+    std::ofstream(folder_ / path, std::ios::binary) << text;
+    EXPECT_EQ(check_with_xxhsum(), 0) << path;
+  }
+}
+
+TEST_F(ManifestTest, ChecksumsAreTheToolsOwnOutput) {
+  if (std::system("xxhsum --version >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "xxhsum is not installed";
+  write_manifest(folder_, dataset_, images_);
+  const std::string command =
+      "cd '" + folder_.string() +
+      "' && find images manifest -type f ! -name checksums.xxh128 | LC_ALL=C sort | xargs "
+      "xxhsum -H2 > tool";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(read("manifest/checksums.xxh128"), read("tool"));
+}
+
+TEST_F(ManifestTest, RefusesWhatNoManifestCanSay) {
+  auto twice = images_;
+  twice.push_back(images_[0]);
+  EXPECT_THROW(write_manifest(folder_, dataset_, twice), Error);
+  for (const char* path :
+       {"/tmp/a.png", "../a.png", "images/../../a.png", "a\nb.png", "a\\b.png", ""}) {
+    auto images = images_;
+    images[0].files[0].path = path;
+    EXPECT_THROW(write_manifest(folder_, dataset_, images), Error) << path;
+  }
+  auto images = images_;
+  images[0].tone_map_scale = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(write_manifest(folder_, dataset_, images), Error);
+  images = images_;
+  images[0].model = "\xff";
+  EXPECT_THROW(write_manifest(folder_, dataset_, images), Error);
+  EXPECT_FALSE(fs::exists(folder_ / "manifest"))
+      << "nothing is written before all is known to be right";
+}
+
+TEST_F(ManifestTest, NamesLineAndFieldOfEveryDamage) {
+  write_manifest(folder_, dataset_, images_);
+  nlohmann::json first = nlohmann::json::parse(to_json_line(images_[0]));
+  first["spp"] = -1;
+  first["render_key"] = "zz";
+  first["camera_to_world"][3] = {0, 0, 1};
+  first.erase("view");
+  write_file_atomic(folder_ / "manifest/images.jsonl",
+                    first.dump() + "\n{]\n[1]\n" + to_json_line(images_[1]));
+  try {
+    read_images_manifest(folder_);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    EXPECT_EQ(error.kind(), ErrorKind::asset);
+    EXPECT_THAT(what, HasSubstr("images.jsonl:1: spp must be a count, got -1\n"));
+    EXPECT_THAT(
+        what, HasSubstr("images.jsonl:1: render_key must be 32 hexadecimal digits, got \"zz\"\n"));
+    EXPECT_THAT(what, HasSubstr("images.jsonl:1: camera_to_world must be rows of numbers, got "));
+    EXPECT_THAT(what, HasSubstr("images.jsonl:1: view must be there\n"));
+    EXPECT_THAT(what, HasSubstr("images.jsonl:2: must be a JSON object: "));
+    EXPECT_THAT(what, HasSubstr("images.jsonl:3: must be a JSON object, got array\n"));
+    EXPECT_THAT(what, HasSubstr("images.jsonl:4: must end in a line break: the file is cut off"));
+  }
+}
+
+TEST_F(ManifestTest, SaysWhenItIsMissingOrOfAnotherFormat) {
+  EXPECT_THROW(read_images_manifest(folder_), Error);
+  EXPECT_THROW(read_dataset_manifest(folder_), Error);
+  auto dataset = nlohmann::json::parse(to_json(dataset_));
+  dataset["format"] = k_manifest_format + 1;
+  EXPECT_THROW(dataset_from_json(dataset.dump(), "d"), Error);
+}
+
+TEST(CanonicalJson, WritesEachNumberInItsShortestForm) {
+  const nlohmann::json values = {0.1, -0.0, 1.0, 1e300, 5e-324, 123456789.125, 3, -7};
+  EXPECT_EQ(canonical_json(values), "[0.1,0,1,1e+300,5e-324,123456789.125,3,-7]");
+  const auto back = nlohmann::json::parse(canonical_json(values));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    EXPECT_EQ(back[i].get<double>(), values[i].get<double>());
+}
+
+TEST(CanonicalJson, SortsKeysByBytesAndIndents) {
+  const nlohmann::json value = {
+      {"b", nlohmann::json::array()}, {"a", {{"z", 1}, {"A", nullptr}}}, {"é", "ü\n"}};
+  EXPECT_EQ(canonical_json(value), "{\"a\":{\"A\":null,\"z\":1},\"b\":[],\"é\":\"ü\\n\"}");
+  EXPECT_EQ(canonical_json({{"a", {1, true}}}, 2), "{\n  \"a\": [\n    1,\n    true\n  ]\n}\n");
+}
+
+}  // namespace
+}  // namespace ds

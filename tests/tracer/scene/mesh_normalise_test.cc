@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/tracer/scene/mesh_samples.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+namespace ds {
+namespace {
+
+using samples::box_off;
+using samples::replaced;
+
+constexpr NormaliseOptions k_as_it_is{
+    .up = UpAxis::z, .size_m = 0, .place_on_ground = false, .centre = Centring::none};
+
+Mesh model(const std::string& file) {
+  return parse_model(file, "m").mesh;
+}
+
+struct Bounds {
+  Vec3 least, most;
+};
+Bounds bounds(const Mesh& mesh) {
+  Bounds b{mesh.positions[0], mesh.positions[0]};
+  for (const Vec3 p : mesh.positions) {
+    b.least = {std::min(b.least.x, p.x), std::min(b.least.y, p.y), std::min(b.least.z, p.z)};
+    b.most = {std::max(b.most.x, p.x), std::max(b.most.y, p.y), std::max(b.most.z, p.z)};
+  }
+  return b;
+}
+void expect_near(Vec3 a, Vec3 b, double tolerance) {
+  EXPECT_LE(length(to_double(a) - to_double(b)), tolerance)
+      << fmt::format("({}, {}, {}) and ({}, {}, {})", a.x, a.y, a.z, b.x, b.y, b.z);
+}
+// Half a unit in the last place of 0.16.
+constexpr double k_rounding = 1e-8;
+
+TEST(Normalise, PlacesABoxAsTheThesisDoes) {
+  // 2 wide, 4 high (Y up), 1 deep: the height becomes z.
+  const Mesh mesh = normalise(model(box_off(2, 4, 1)), {});
+  const Bounds b = bounds(mesh);
+  expect_near(b.least, {-0.04F, -0.02F, -0.0574F}, k_rounding);
+  expect_near(b.most, {0.04F, 0.02F, 0.16F - 0.0574F}, k_rounding);
+  EXPECT_EQ(b.least.z, -0.0574F);
+}
+
+TEST(Normalise, TurnsYUpToZUpWithoutMirroring) {
+  NormaliseOptions options = k_as_it_is;
+  options.up = UpAxis::y;
+  options.normals = Normals::flat;
+  const Mesh mesh = normalise(model("OFF 3 1 0\n1 2 3\n2 2 3\n1 3 3\n3 0 1 2\n"), options);
+  EXPECT_EQ(mesh.positions, (std::vector<Vec3>{{1, -3, 2}, {2, -3, 2}, {1, -3, 3}}));
+  EXPECT_EQ(mesh.normals, std::vector<Vec3>(3, {0, -1, 0}));  // +Z turned
+}
+
+TEST(Normalise, EachStepCanBeSwitchedOff) {
+  const Mesh source = model(replaced(samples::k_tetra_off, "0 0 0", "-1 0.5 2"));
+  const Mesh same = normalise(source, k_as_it_is);
+  EXPECT_EQ(bounds(same).least, bounds(source).least);
+  EXPECT_EQ(bounds(same).most, bounds(source).most);
+
+  NormaliseOptions only_size = k_as_it_is;
+  only_size.size_m = 10;
+  const Bounds scaled = bounds(normalise(source, only_size));
+  expect_near(scaled.least, {-2, 0, 0}, 1e-6);
+  expect_near(scaled.most, {8, 8, 8}, 1e-6);
+
+  NormaliseOptions only_ground = k_as_it_is;
+  only_ground.place_on_ground = true;
+  only_ground.ground_z_m = 7;
+  EXPECT_EQ(bounds(normalise(source, only_ground)).least, (Vec3{-1, 0, 7}));
+
+  NormaliseOptions only_box = k_as_it_is;
+  only_box.centre = Centring::box;
+  EXPECT_EQ(bounds(normalise(source, only_box)).least, (Vec3{-2.5F, -2, 0}));
+}
+
+TEST(Normalise, CentreOfMassIsThatOfTheSurface) {
+  // The tetrahedron (0,0,0) (4,0,0) (0,4,0) (0,0,4): three right triangles of area 8 with centroids
+  // (4/3, 4/3, 0) and permutations, and one of 8 sqrt 3 with centroid (4/3, 4/3, 4/3). In x and y:
+  // (2 * 8 + 8 sqrt 3) * 4/3 / (24 + 8 sqrt 3), whatever its tessellation or duplicates.
+  const double centre = (16 + 8 * std::numbers::sqrt3) * 4 / 3 / (24 + 8 * std::numbers::sqrt3);
+  NormaliseOptions options = k_as_it_is;
+  options.centre = Centring::mass;
+  const Bounds b = bounds(normalise(model(samples::k_tetra_off), options));
+  expect_near(b.least, {static_cast<float>(-centre), static_cast<float>(-centre), 0}, 2e-7);
+}
+
+TEST(Normalise, AFarModelKeepsItsDigits) {
+  // Moved by 2^20 in file units, where floats step by 1/16: the box's corners are still exact.
+  std::string far = "OFF\n8 6 0\n";
+  for (const char* corner :
+       {"0 0 0", "2 0 0", "2 4 0", "0 4 0", "0 0 1", "2 0 1", "2 4 1", "0 4 1"}) {
+    int x = 0, y = 0, z = 0;
+    ASSERT_EQ(std::sscanf(corner, "%d %d %d", &x, &y, &z), 3);
+    far += fmt::format("{} {} {}\n", x + 1048576, y - 1048576, z + 1048576);
+  }
+  far += "4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
+  const Mesh near_mesh = normalise(model(box_off(2, 4, 1)), {}),
+             far_mesh = normalise(model(far), {});
+  ASSERT_EQ(near_mesh.positions.size(), far_mesh.positions.size());
+  for (std::size_t i = 0; i < near_mesh.positions.size(); ++i)
+    expect_near(near_mesh.positions[i], far_mesh.positions[i], 1e-9);
+}
+
+TEST(Normalise, ACubeSplitsIntoTwentyFourVertices) {
+  for (const Normals normals : {Normals::smooth, Normals::flat}) {
+    NormaliseOptions options = k_as_it_is;
+    options.normals = normals;
+    const Mesh mesh = normalise(model(box_off(1, 1, 1)), options);
+    EXPECT_EQ(mesh.positions.size(), 24U);
+    EXPECT_EQ(mesh.triangles.size(), 12U);
+    std::set<std::tuple<float, float, float>> directions;
+    for (const Vec3 n : mesh.normals)
+      directions.insert({n.x, n.y, n.z});
+    EXPECT_EQ(directions,
+              (std::set<std::tuple<float, float, float>>{
+                  {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}));
+  }
+  NormaliseOptions round = k_as_it_is;
+  round.crease_deg = 91;
+  EXPECT_EQ(normalise(model(box_off(1, 1, 1)), round).positions.size(), 8U);
+}
+
+/// A sphere of radius 1 about (5, 6, 7) as rows of quads, every quad with vertices of its own, as
+/// many benchmark models are written.
+std::string sphere_off(int rows, int columns) {
+  std::string vertices, faces;
+  int count = 0, face_count = 0;
+  const auto at = [&](int row, int column) {
+    const double theta = std::numbers::pi * row / rows;
+    const double phi = 2 * std::numbers::pi * (column % columns) / columns;
+    const double ring = row == 0 || row == rows ? 0 : std::sin(theta);
+    return fmt::format("{:.9g} {:.9g} {:.9g}\n", 5 + ring * std::cos(phi), 6 + ring * std::sin(phi),
+                       7 + std::cos(theta));
+  };
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c) {
+      vertices += at(r, c) + at(r + 1, c) + at(r + 1, c + 1) + at(r, c + 1);
+      faces += fmt::format("4 {} {} {} {}\n", count, count + 1, count + 2, count + 3);
+      count += 4;
+      ++face_count;
+    }
+  return fmt::format("OFF\n{} {} 0\n", count, face_count) + vertices + faces;
+}
+
+double worst_angle_deg(const Mesh& mesh, Vec3d centre) {
+  double worst = 0;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const Vec3d radial = normalized(to_double(mesh.positions[i]) - centre);
+    const Vec3d normal = to_double(mesh.normals[i]);
+    worst = std::max(worst, std::atan2(length(cross(radial, normal)), dot(radial, normal)));
+  }
+  return worst * 180 / std::numbers::pi;
+}
+
+TEST(Normalise, ASphereOfLooseQuadsIsSmooth) {
+  const Model loose = parse_model(sphere_off(64, 128), "m");
+  EXPECT_EQ(loose.report.zero_area, 2U * 128);  // a quad at a pole has an edge of length 0
+  EXPECT_EQ(loose.report.flipped, 0U);
+  const Mesh mesh = normalise(loose.mesh, k_as_it_is);
+  EXPECT_EQ(mesh.positions.size(), 63U * 128 + 2);
+  // A row spans 2.8 degrees; the quads' diagonals tilt the mean by a small part of that.
+  EXPECT_LT(worst_angle_deg(mesh, {5, 6, 7}), 0.1);
+}
+
+TEST(Normalise, FlippedTrianglesDoNotSpoilTheirNeighbours) {
+  Model loose = parse_model(sphere_off(64, 128), "m");
+  auto& triangles = loose.mesh.triangles;
+  for (std::size_t i = 0; i < triangles.size(); i += 37)
+    std::swap(triangles[i][1], triangles[i][2]);
+  const Mesh mesh = normalise(loose.mesh, k_as_it_is);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      const Vec3d radial = normalized(to_double(mesh.positions[v]) - Vec3d{5, 6, 7});
+      const double cosine = dot(radial, to_double(mesh.normals[v])) * (t % 37 == 0 ? -1 : 1);
+      EXPECT_GT(cosine, 0.999) << t;  // 2.6 degrees: about the size of a triangle
+    }
+}
+
+const char* const k_with_normals =
+    "STNOFF 4 2 0\n0 0 0 0 0 1 0 0\n1 0 0 0 1 0 1 0\n1 1 0 0 0 1 1 1\n0 1 0 3 0 4 0 1\n3 0 1 2\n3 "
+    "0 2 3\n";
+
+TEST(Normalise, KeepTurnsTheStoredNormals) {
+  NormaliseOptions options = k_as_it_is;
+  options.up = UpAxis::y;
+  options.normals = Normals::keep;
+  const Mesh source = model(k_with_normals), mesh = normalise(source, options);
+  EXPECT_EQ(mesh.normals, (std::vector<Vec3>{{0, -1, 0}, {0, 0, 1}, {0, -1, 0}, {0.6F, -0.8F, 0}}));
+  EXPECT_EQ(mesh.triangles, source.triangles);
+  EXPECT_EQ(mesh.uvs, source.uvs);
+}
+
+TEST(Normalise, KeepWantsNormals) {
+  NormaliseOptions options;
+  options.normals = Normals::keep;
+  const Mesh mesh = model(samples::k_tetra_off);
+  EXPECT_THROW(normalise(mesh, options), Error);
+}
+
+TEST(Normalise, KeepsUvsAndSplitsWhereTheyDiffer) {
+  const Mesh one = normalise(model(k_with_normals), k_as_it_is);
+  EXPECT_EQ(one.positions.size(), 4U);
+  EXPECT_EQ(one.uvs, (std::vector<Vec2>{{0, 0}, {1, 0}, {1, 1}, {0, 1}}));
+  // A seam: the same square with vertices of its own for the second triangle, one with another uv.
+  const Mesh seam =
+      normalise(model("STOFF 6 2 0\n0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 0 0 0.5 0\n1 1 0 1 1\n"
+                      "0 1 0 0 1\n3 0 1 2\n3 3 4 5\n"),
+                k_as_it_is);
+  EXPECT_EQ(seam.positions.size(), 5U);
+  EXPECT_EQ(seam.normals, std::vector<Vec3>(5, {0, 0, 1}));
+}
+
+TEST(Normalise, HasNoNegativeZeroAndIsPure) {
+  const Mesh source = model(samples::k_tetra_off);
+  for (const Normals normals : {Normals::smooth, Normals::flat}) {
+    NormaliseOptions options;
+    options.normals = normals;
+    const Mesh mesh = normalise(source, options);
+    EXPECT_EQ(geometry_hash(mesh), geometry_hash(normalise(source, options)));
+    for (const auto& list : {mesh.positions, mesh.normals})
+      for (const Vec3 v : list)
+        for (const float x : {v.x, v.y, v.z})
+          EXPECT_FALSE(x == 0 && std::signbit(x));
+  }
+}
+
+/// A bumpy sheet of whole-number coordinates: nothing in the file depends on a mathematical
+/// library.
+std::string sheet_off() {
+  constexpr int k_side = 20;
+  std::string vertices, faces;
+  for (int y = 0; y <= k_side; ++y)
+    for (int x = 0; x <= k_side; ++x)
+      vertices += fmt::format("{} {} {}\n", 3 * x, (7 * x * y + 5 * x * x) % 6, 3 * y);
+  for (int y = 0; y < k_side; ++y)
+    for (int x = 0; x < k_side; ++x) {
+      const int at = y * (k_side + 1) + x;
+      faces += fmt::format("4 {} {} {} {}\n", at, at + k_side + 1, at + k_side + 2, at + 1);
+    }
+  return fmt::format("OFF\n{} {} 0\n", (k_side + 1) * (k_side + 1), k_side * k_side) + vertices +
+         faces;
+}
+
+TEST(Normalise, GivesTheSameBitsOnEveryMachine) {
+  // The value a first run gave. Another one makes every dataset stale: then raise the host's render
+  // version with it.
+  EXPECT_EQ(geometry_hash(normalise(model(sheet_off()), {})).hex(),
+            "850b24596518aeda843e0e9407d265bd");
+}
+
+}  // namespace
+}  // namespace ds

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tracer/base/error.h"
+#include "tracer/scene/mesh.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ds::samples {
+
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+/// A box as quads, counter-clockwise seen from outside.
+inline std::string box_off(double x, double y, double z, const char* keyword = "OFF") {
+  return fmt::format(
+      "{0}\n8 6 12\n0 0 0\n{1} 0 0\n{1} {2} 0\n0 {2} 0\n0 0 {3}\n{1} 0 {3}\n{1} {2} {3}\n0 {2} "
+      "{3}\n"
+      "4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n",
+      keyword, x, y, z);
+}
+
+/// Corners (0,0,0) (4,0,0) (0,4,0) (0,0,4), faces seen from outside.
+inline const std::vector<Vec3> k_tetra_positions{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}};
+inline const Triangles k_tetra_triangles{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+
+inline const char* const k_tetra_off =
+    "OFF\n4 4 6\n0 0 0\n4 0 0\n0 4 0\n0 0 4\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+
+inline const char* const k_tetra_ply =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+    "z\n"
+    "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0\n4 0 0\n0 4 0\n0 0 4\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+
+inline void expect_tetra(const Mesh& mesh) {
+  EXPECT_EQ(mesh.positions, k_tetra_positions);
+  EXPECT_EQ(mesh.triangles, k_tetra_triangles);
+}
+
+/// Appends the bytes of a value as `T` in the wanted order.
+template <typename T>
+void put(std::string& out, double value, std::endian order) {
+  const T typed = static_cast<T>(value);
+  char raw[sizeof(T)];
+  std::memcpy(raw, &typed, sizeof(T));
+  for (std::size_t i = 0; i < sizeof(T); ++i)
+    out += raw[order == std::endian::native ? i : sizeof(T) - 1 - i];
+}
+
+/// `text` with each `from` replaced.
+inline std::string replaced(std::string text, std::string_view from, std::string_view to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size())
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+/// The message of the Error(asset) that reading `bytes` as "m" throws.
+inline std::string error_of(std::string_view bytes) {
+  try {
+    parse_model(bytes, "m");
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::asset);
+    return error.what();
+  }
+  ADD_FAILURE() << "read without an error";
+  return {};
+}
+
+}  // namespace ds::samples

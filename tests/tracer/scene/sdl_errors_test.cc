@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "tests/tracer/scene/sdl_files_for_tests.h"
+
+namespace ds {
+namespace {
+
+using ::ds::testing::SdlFolder;
+
+struct Case {
+  const char* text;
+  const char* message;
+};
+
+class MaterialErrors : public ::testing::TestWithParam<Case> {};
+
+TEST_P(MaterialErrors, SayWhatWasWantedAndFound) {
+  const SdlFolder folder;
+  EXPECT_EQ(folder.material_error(GetParam().text), GetParam().message);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, MaterialErrors,
+    ::testing::Values(
+        Case{"", "m.scn: wanted a material, found no scene.materials"},
+        Case{"scene.materials.a.type = velvet\nscene.materials.a.kd = 1\n",
+             "m.scn:1: scene.materials.a.type: material type \"velvet\" is not supported yet"},
+        Case{"scene.materials.a.type = plastic",
+             "m.scn:1: scene.materials.a.type: material type \"plastic\" is unknown"},
+        Case{"scene.textures.t.type = brick\nscene.materials.a.kd = 1",
+             "m.scn:1: scene.textures.t.type: texture type \"brick\" is not supported yet"},
+        Case{"scene.textures.t.type = wood\nscene.materials.a.kd = 1",
+             "m.scn:1: scene.textures.t.type: texture type \"wood\" is unknown"},
+        Case{"scene.materials.a.type = matte\nscene.materials.a.ks = 1",
+             "m.scn:2: scene.materials.a.ks is unknown to a material of type matte"},
+        Case{"scene.materials.a.kd = 1\nscene.materials.a.bumptex = t",
+             "m.scn:2: scene.materials.a.bumptex = t is not supported yet"},
+        Case{"scene.materials.a.kd = 1\nscene.materials.a.transparency = 0.5",
+             "m.scn:2: scene.materials.a.transparency = 0.5 is not supported yet"},
+        Case{"scene.materials.a.kd = 1\nscene.materials.a.emission.theta = 45",
+             "m.scn:2: scene.materials.a.emission.theta = 45 is not supported yet"},
+        Case{"scene.materials.a.type = glass\nscene.materials.a.cauchyb = 0.01",
+             "m.scn:2: scene.materials.a.cauchyb = 0.01 is not supported yet"},
+        Case{"scene.materials.a.type = glass\nscene.materials.a.filmthickness = 1",
+             "m.scn:2: scene.materials.a.filmthickness = 1 is not supported yet"},
+        Case{"scene.materials.a.kd = 1 2",
+             "m.scn:1: scene.materials.a.kd: wanted one number, three numbers or the name of a texture, found "
+             "\"1 2\""},
+        Case{"scene.materials.a.kd = nan",
+             "m.scn:1: scene.materials.a.kd: wanted one number, three numbers or the name of a texture, found "
+             "\"nan\""},
+        Case{"scene.materials.a.kd = opencolorio cfg space 1 1 1",
+             "m.scn:1: scene.materials.a.kd: colour space of \"opencolorio cfg space 1 1 1\" is not supported yet"},
+        Case{"scene.materials.a.type = glossy2\nscene.materials.a.multibounce = maybe",
+             "m.scn:2: scene.materials.a.multibounce: wanted a number, found \"maybe\""},
+        Case{"scene.textures.a.type = scale\nscene.textures.a.texture1 = b\n"
+             "scene.textures.b.type = fbm\nscene.textures.b.mapping.type = globalmapping3d\n"
+             "scene.materials.m.kd = a",
+             "m.scn:2: scene.textures.a.texture1: texture \"b\" cannot be used here: it is defined below its use or "
+             "has an error"},
+        Case{"scene.materials.a.type = mix\nscene.materials.a.material1 = b\nscene.materials.a.material2 = b\n"
+             "scene.materials.b.kd = 1",
+             "m.scn:2: scene.materials.a.material1: material \"b\" is not defined above\n"
+             "m.scn:3: scene.materials.a.material2: material \"b\" is not defined above"},
+        Case{"scene.materials.b.emission = 1\nscene.materials.a.type = mix\n"
+             "scene.materials.a.material1 = b\n",
+             "m.scn:3: scene.materials.a.material1: a mix of the material \"b\", which emits light, is not supported "
+             "yet\nm.scn:2: scene.materials.a: material2 is missing"},
+        Case{"scene.materials.a.type = metal2\nscene.materials.a.preset = mithril",
+             "m.scn:2: scene.materials.a.preset: wanted one of aluminium, amorphous carbon, copper, gold, silver, "
+             "found \"mithril\""},
+        Case{"scene.materials.a.type = metal2\nscene.materials.a.fresnel = f",
+             "m.scn:2: scene.materials.a.fresnel: wanted the name of a fresnelpreset, fresnelcolor or fresnelconst "
+             "texture, found \"f\""},
+        Case{"scene.materials.a.emission = 1\nscene.materials.a.emission.power = 10\n"
+             "scene.materials.a.emission.efficiency = 1",
+             "m.scn:2: scene.materials.a.emission.power: needs the area of an object, and a material file has none: "
+             "use emission.gain"},
+        Case{"scene.textures.t.file = no.png\nscene.materials.a.kd = t",
+             "m.scn:1: scene.textures.t.file: file no.png does not exist\n"
+             "m.scn:2: scene.materials.a.kd: texture \"t\" cannot be used here: it is defined below its use or has an "
+             "error"},
+        Case{"scene.textures.t.type = marble\nscene.materials.a.kd = t",
+             "m.scn:1: scene.textures.t.mapping.type: mapping \"uvmapping3d\" is not supported yet for a 3D texture, "
+             "only globalmapping3d is"},
+        Case{"scene.objects.a.ply = a.ply\nscene.materials.a.kd = 1",
+             "m.scn:1: scene.objects.a.ply does not belong in a material file"},
+        Case{"scene.camera.type = perspective\nscene.materials.a.kd = 1",
+             "m.scn:1: scene.camera.type does not belong here: the camera is in the recipe"},
+        Case{"scene.volumes.v.type = clear\nscene.materials.a.kd = 1",
+             "m.scn:1: scene.volumes.v.type is not supported yet"},
+        Case{"hello.world = 1\nscene.materials.a.kd = 1", "m.scn:1: hello.world is unknown"},
+        Case{"scene.materials.a = 1\nscene.materials.b.kd = 1",
+             "m.scn:1: scene.materials.a is unknown: wanted a property of a material"}));
+
+class EnvironmentErrors : public ::testing::TestWithParam<Case> {};
+
+TEST_P(EnvironmentErrors, SayWhatWasWantedAndFound) {
+  const SdlFolder folder;
+  EXPECT_EQ(folder.environment_error(GetParam().text), GetParam().message);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, EnvironmentErrors,
+    ::testing::Values(
+        Case{"scene.lights.l.type = laser",
+             "environment.scn:1: scene.lights.l.type: light type \"laser\" is not supported yet"},
+        Case{"scene.lights.l.type = area",
+             "environment.scn:1: scene.lights.l.type: light type \"area\" is unknown"},
+        Case{"scene.lights.l.type = point\nscene.lights.l.iesfile = a.ies",
+             "environment.scn:2: scene.lights.l.iesfile = a.ies is not supported yet"},
+        Case{"scene.lights.l.type = sun\nscene.lights.l.color = 1 1 1",
+             "environment.scn:2: scene.lights.l.color is unknown to a light of type sun"},
+        Case{"scene.lights.l.type = sun\nscene.lights.l.dir = 1 0 -1",
+             "environment.scn:2: scene.lights.l.dir: wanted a sun above the horizon, found z = "
+             "-0.7071067811865475"},
+        Case{"scene.lights.l.type = point\nscene.lights.l.gain = 1",
+             "environment.scn:2: scene.lights.l.gain: wanted three numbers that are not negative, found \"1\""},
+        Case{"scene.lights.l.type = spot\nscene.lights.l.coneangle = 90",
+             "environment.scn:2: scene.lights.l.coneangle: wanted an angle in (0, 90) degrees, found 90"},
+        Case{"scene.lights.l.type = infinite",
+             "environment.scn:1: scene.lights.l: file is missing"},
+        Case{"scene.shapes.s.type = strands",
+             "environment.scn:1: scene.shapes.s.type: shape type \"strands\" is not supported yet"},
+        Case{"scene.materials.m.kd = 1\nscene.objects.o.material = m\n",
+             "environment.scn:2: scene.objects.o: wanted one of ply, shape and vertices, found 0"},
+        Case{"scene.objects.o.vertices = 0 0 0 1 0 0 0 1 0\nscene.objects.o.faces = 0 1 2",
+             "environment.scn:1: scene.objects.o: material is missing"},
+        Case{"scene.materials.m.kd = 1\nscene.objects.o.material = m\n"
+             "scene.objects.o.vertices = 0 0 0 1 0 0 0 1 0\nscene.objects.o.faces = 0 1 3",
+             "environment.scn:4: scene.objects.o.faces: wanted indices below 3, found 3"},
+        Case{"scene.materials.m.kd = 1\nscene.objects.o.material = m\n"
+             "scene.objects.o.vertices = 0 0 0 1 0 0 0 1\nscene.objects.o.faces = 0 1 1",
+             "environment.scn:3: scene.objects.o.vertices: wanted a multiple of 3 numbers, found 8\n"
+             "environment.scn:4: scene.objects.o.faces: wanted indices below 0, found 0"},
+        Case{"scene.materials.m.kd = 1\nscene.objects.o.material = m\nscene.objects.o.id = 1\n"
+             "scene.objects.o.vertices = 0 0 0 1 0 0 0 1 0\nscene.objects.o.faces = 0 1 2",
+             "environment.scn:3: scene.objects.o.id: 1 is the id of the dataset's model, take another"},
+        Case{"scene.materials.m.kd = 1\nscene.objects.o.material = m\n"
+             "scene.objects.o.transformation = 1 0 0 5 0 1 0 0 0 0 1 0 0 0 0 1\n"
+             "scene.objects.o.vertices = 0 0 0 1 0 0 0 1 0\nscene.objects.o.faces = 0 1 2",
+             "environment.scn:3: scene.objects.o.transformation: wanted an affine matrix column by column, found 5 0 "
+             "0 1 as its last row"},
+        Case{"scene.materials.m.kd = 1\nscene.objects.o.material = m\n"
+             "scene.objects.o.motion.0.time = 0\n"
+             "scene.objects.o.vertices = 0 0 0 1 0 0 0 1 0\nscene.objects.o.faces = 0 1 2",
+             "environment.scn:3: scene.objects.o.motion.0.time = 0 is not supported yet"}));
+
+TEST(SdlErrors, AMissingFileIsSaid) {
+  const SdlFolder folder;
+  EXPECT_THROW(read_material(folder.path() / "no.scn"), Error);
+  EXPECT_THROW(read_environment(folder.path() / "no"), Error);
+}
+
+TEST(SdlErrors, AllFindingsAreReportedTogether) {
+  const SdlFolder folder;
+  EXPECT_EQ(folder.material_error("broken\nscene.materials.a.type = cloth\nscene.materials.b.kd = x\n"),
+            "m.scn:1: wanted \"name = values\", found \"broken\"\n"
+            "m.scn:2: scene.materials.a.type: material type \"cloth\" is not supported yet\n"
+            "m.scn:3: scene.materials.b.kd: wanted one number, three numbers or the name of a texture, found \"x\"");
+}
+
+TEST(SdlErrors, AnHdrImageNeedsGammaOne) {
+  const SdlFolder folder;
+  folder.write("sky.exr", "not read here");
+  EXPECT_EQ(folder.environment_error("scene.lights.l.type = infinite\nscene.lights.l.file = sky.exr\n"),
+            "environment.scn:1: scene.lights.l.gamma: wanted gamma = 1 for the HDR image sky.exr, found 2.2");
+}
+
+TEST(SdlErrors, FilmFile) {
+  const SdlFolder folder;
+  folder.write("environment.cfg",
+               "film.imagepipeline.0.type = BLOOM\nfilm.imagepipeline.1.type = SEPIA\nfilm.width = 640\n"
+               "film.imagepipeline.2.type = TONEMAP_LINEAR\nfilm.imagepipeline.2.scale = 0\n"
+               "film.imagepipeline.2.gain = 1\nsampler.type = SOBOL\n");
+  EXPECT_EQ(folder.environment_error(""),
+            "environment.cfg:1: film.imagepipeline.0.type: image pipeline step type \"BLOOM\" is not supported yet\n"
+            "environment.cfg:2: film.imagepipeline.1.type: image pipeline step type \"SEPIA\" is unknown\n"
+            "environment.cfg:5: film.imagepipeline.2.scale: wanted a number above 0, found 0\n"
+            "environment.cfg:3: film.width does not belong here: only film.imagepipeline does, the rest is in the "
+            "recipe\n"
+            "environment.cfg:6: film.imagepipeline.2.gain is unknown to a image pipeline step of type "
+            "TONEMAP_LINEAR\n"
+            "environment.cfg:7: sampler.type does not belong here: the engine is in the recipe");
+}
+
+}  // namespace
+}  // namespace ds

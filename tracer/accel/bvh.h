@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tracer/base/vec.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace ds {
+
+/// The tree as the kernels read it (layout: tracer/kernels/types.h).
+struct Bvh {
+  std::vector<float> nodes;   ///< k_node_vectors * 8 floats a node; node 0 is the root
+  std::vector<float> leaves;  ///< k_leaf_vectors * 8 words a leaf
+  float reach = 0;            ///< greatest |coordinate| of any corner, metres
+};
+
+enum class BvhQuality { low, medium, high };
+
+/// Builds the tree over triangles given by their corners; a triangle's id is its index. At least
+/// one triangle; all coordinates finite and at most 1e18 in size. Quality changes the speed of
+/// rays, never what they hit. Throws Error(device) where Embree fails or the tree is deeper than
+/// the kernels' stack allows.
+Bvh build_bvh(std::span<const std::array<Vec3, 3>> triangles,
+              BvhQuality quality = BvhQuality::medium);
+
+}  // namespace ds

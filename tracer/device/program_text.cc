@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/device/program_text.h"
+
+#include "tracer/base/error.h"
+#include "tracer/device/texture_code.h"
+#include "tracer/kernels/embedded.h"
+#include "tracer/scene/type_tables.h"
+
+#include <algorithm>
+#include <set>
+#include <span>
+
+namespace ds {
+namespace {
+
+constexpr std::string_view k_mix = "mix";
+
+std::string_view embedded_text(std::string_view path) {
+  for (const EmbeddedFile& file : std::span(k_embedded_files, k_embedded_file_count))
+    if (path == file.path) return file.text;
+  fail(ErrorKind::device, "kernel file {} is not part of this program", path);
+}
+
+/// The path of a line `#include "path"`, or nothing.
+std::string_view included_path(std::string_view line) {
+  constexpr std::string_view start = "#include \"";
+  if (!line.starts_with(start)) return {};
+  line.remove_prefix(start.size());
+  return line.substr(0, line.find('"'));
+}
+
+void append_with_includes(std::string_view path, std::set<std::string, std::less<>>& done,
+                          std::string& out) {
+  if (!done.emplace(path).second) return;
+  std::string_view text = embedded_text(path);
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(end == text.npos ? text.size() : end + 1);
+    if (const std::string_view other = included_path(line); !other.empty()) {
+      append_with_includes(other, done, out);
+    } else if (!line.starts_with("#pragma once")) {
+      out += line;
+      out += '\n';
+    }
+  }
+}
+
+/// "#define NAME(X) X(a, 0) X(b, 1)"
+std::string list_definition(std::string_view name, const std::vector<std::string>& entries,
+                            const std::vector<std::string>& numbers_from) {
+  std::string text = fmt::format("#define {}(X)", name);
+  for (const std::string& entry : entries)
+    text += fmt::format(" X({}, {})", entry, Features::number(numbers_from, entry));
+  return text + "\n";
+}
+
+int input_floats(const NodeType& type) {
+  int floats = 0;
+  for (const InputType& input : type.inputs)
+    floats += input.width;
+  return floats;
+}
+
+/// Materials that objects show, and the parts of mixes among them.
+std::vector<bool> used_materials(const Scene& scene) {
+  std::vector<bool> used(scene.materials.size(), false);
+  for (const Object& object : scene.objects)
+    if (object.material >= 0) used[static_cast<std::size_t>(object.material)] = true;
+  // Children stand before their parent, so one pass from the end reaches all.
+  for (std::size_t i = scene.materials.size(); i-- > 0;)
+    if (used[i])
+      for (const int child : scene.materials[i].children)
+        if (child >= 0) used[static_cast<std::size_t>(child)] = true;
+  return used;
+}
+
+/// Keeps the order of the tables, so that equal sets make equal programs.
+std::vector<std::string> prefixes(std::span<const NodeType> types,
+                                  const std::vector<bool>& present) {
+  std::vector<std::string> list;
+  for (std::size_t i = 0; i < types.size(); ++i)
+    if (present[i]) list.emplace_back(types[i].kernel_prefix);
+  return list;
+}
+
+void add_materials(const Scene& scene, Features& f) {
+  const std::vector<bool> used = used_materials(scene);
+  std::vector<bool> present(material_types().size(), false);
+  std::vector<bool> textures(texture_types().size(), false);
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (!used[i]) continue;
+    const Material& material = scene.materials[i];
+    const NodeType& type = material_types()[static_cast<std::size_t>(material.type)];
+    present[static_cast<std::size_t>(material.type)] = true;
+    f.material_inputs = std::max(f.material_inputs, input_floats(type));
+    const TextureCode code = texture_code(scene, material);
+    for (const int texture : code.types)
+      textures[static_cast<std::size_t>(texture)] = true;
+    f.texture_stack = std::max(f.texture_stack, code.stack);
+  }
+  const int mix = find_type(material_types(), k_mix);
+  f.mix = present[static_cast<std::size_t>(mix)];
+  present[static_cast<std::size_t>(mix)] = false;
+  f.materials = prefixes(material_types(), present);
+  f.textures = prefixes(texture_types(), textures);
+}
+
+std::string_view light_name(LightKind kind) {
+  switch (kind) {
+    case LightKind::point:
+      return "point";
+    case LightKind::spot:
+      return "spot";
+    case LightKind::sun:
+      return "sun";
+    case LightKind::constant_infinite:
+      return "constant_infinite";
+    case LightKind::infinite:
+      return "infinite";
+  }
+  DS_ASSERT(false);
+}
+
+const std::vector<std::string> k_local_lights = {"mesh", "point", "spot"};
+const std::vector<std::string> k_escape_lights = {"constant_infinite", "infinite", "sun"};
+
+void add_lights(const Scene& scene, Features& f) {
+  std::set<std::string_view> names;
+  for (const Light& light : scene.lights)
+    names.insert(light_name(light.kind));
+  for (const Object& object : scene.objects)
+    if (object.material >= 0 && scene.materials[static_cast<std::size_t>(object.material)].emits)
+      names.insert("mesh");
+  for (const std::string& name : k_local_lights)
+    if (names.contains(name)) f.lights.push_back(name);
+  for (const std::string& name : k_escape_lights) {
+    if (!names.contains(name)) continue;
+    f.lights.push_back(name);
+    f.escape_lights.push_back(name);
+  }
+}
+
+bool picks_lobes(const Features& f) {
+  return f.mix || Features::number(f.materials, "glossy2") >= 0 ||
+         Features::number(f.materials, "glass") >= 0;
+}
+
+}  // namespace
+
+int Features::number(const std::vector<std::string>& list, std::string_view name) {
+  const auto found = std::find(list.begin(), list.end(), name);
+  return found == list.end() ? -1 : static_cast<int>(found - list.begin());
+}
+
+Features features_of(const Scene& scene, const Camera& camera) {
+  Features f;
+  add_materials(scene, f);
+  add_lights(scene, f);
+  f.lens = camera.lens_radius_m > 0;
+  f.lobe_choice = picks_lobes(f);
+  return f;
+}
+
+Features all_features() {
+  Features f;
+  for (const NodeType& type : material_types()) {
+    if (type.name != k_mix) f.materials.emplace_back(type.kernel_prefix);
+    f.material_inputs = std::max(f.material_inputs, input_floats(type));
+  }
+  for (const NodeType& type : texture_types())
+    f.textures.emplace_back(type.kernel_prefix);
+  f.lights = k_local_lights;
+  f.lights.insert(f.lights.end(), k_escape_lights.begin(), k_escape_lights.end());
+  f.escape_lights = k_escape_lights;
+  f.mix = f.lens = f.lobe_choice = true;
+  f.texture_stack = k_texture_stack_limit;
+  return f;
+}
+
+std::string assemble(const std::string& definitions, std::string_view root_path) {
+  std::string text = definitions;
+  std::set<std::string, std::less<>> done;
+  append_with_includes(root_path, done, text);
+  return text;
+}
+
+std::string path_program_text(const Features& f) {
+  std::string head = list_definition("DS_MATERIALS", f.materials, f.materials);
+  if (!f.textures.empty()) {
+    head += list_definition("DS_TEXTURES", f.textures, f.textures);
+    head += fmt::format("#define DS_TEXTURE_STACK {}\n", f.texture_stack);
+  }
+  if (!f.lights.empty()) head += list_definition("DS_LIGHTS", f.lights, f.lights);
+  if (!f.escape_lights.empty())
+    head += list_definition("DS_ESCAPE_LIGHTS", f.escape_lights, f.lights);
+  head += fmt::format("#define DS_MATERIAL_INPUTS {}\n", f.material_inputs);
+  // A constant environment is never sampled; alone, it needs no next-event estimation at all.
+  if (f.lights.size() > 1 || (f.lights.size() == 1 && f.lights[0] != "constant_infinite"))
+    head += "#define DS_LIGHTS_SAMPLED\n";
+  if (Features::number(f.lights, "mesh") >= 0) head += "#define DS_MESH_LIGHTS\n";
+  if (f.mix) head += fmt::format("#define DS_MIX_NUMBER {}\n", f.materials.size());
+  if (f.lens) head += "#define DS_LENS\n";
+  if (f.lobe_choice) head += "#define DS_LOBE_CHOICE\n";
+
+  std::set<std::string, std::less<>> done;
+  std::string text = head;
+  for (const std::string& name : f.textures)
+    append_with_includes(fmt::format("tracer/kernels/textures/{}.h", name), done, text);
+  for (const std::string& name : f.materials)
+    append_with_includes(fmt::format("tracer/kernels/materials/{}.h", name), done, text);
+  if (f.mix) append_with_includes("tracer/kernels/materials/mix.h", done, text);
+  for (const std::string& name : f.lights)
+    append_with_includes(fmt::format("tracer/kernels/lights/{}.h", name), done, text);
+  append_with_includes("tracer/kernels/path.cl", done, text);
+  return text;
+}
+
+std::string geometry_program_text() {
+  return assemble("", "tracer/kernels/geometry.cl");
+}
+std::string rays_program_text() {
+  return assemble("", "tracer/kernels/rays.cl");
+}
+
+std::string strip_comments(std::string_view text) {
+  std::string bare;
+  for (std::size_t i = 0; i < text.size();) {
+    if (text.substr(i, 2) == "//") {
+      i = std::min(text.find('\n', i), text.size());
+    } else if (text.substr(i, 2) == "/*") {
+      const std::size_t end = text.find("*/", i + 2);
+      i = end == text.npos ? text.size() : end + 2;
+      bare += ' ';
+    } else {
+      bare += text[i++];
+    }
+  }
+  std::string out;
+  std::string_view rest = bare;
+  while (!rest.empty()) {
+    std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    const std::size_t last = line.find_last_not_of(" \t\r");
+    if (last == line.npos) continue;
+    out += line.substr(0, last + 1);
+    out += '\n';
+  }
+  return out;
+}
+
+}  // namespace ds

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tracer/scene/scene.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ds {
+
+/// What a scene calls for; the program contains this and nothing else. Numbers are the positions in
+/// these lists.
+struct Features {
+  std::vector<std::string>
+      materials;  ///< kernel prefixes, in the order of lists.h; mix is not among them
+  std::vector<std::string> textures;  ///< kernel prefixes
+  std::vector<std::string>
+      lights;  ///< "point", "spot", "mesh", "constant_infinite", "infinite", "sun"
+  std::vector<std::string> escape_lights;  ///< those of `lights` that lie beyond the scene
+  bool mix = false;
+  bool lens = false;
+  bool lobe_choice = false;  ///< a material that picks one of several lobes, or mix
+  int material_inputs = 1;   ///< most floats any used material's inputs take
+  int texture_stack = 1;     ///< most values any texture program has on its stack at once
+
+  bool operator==(const Features&) const = default;
+  /// Position in the list, or -1.
+  static int number(const std::vector<std::string>& list, std::string_view name);
+};
+
+/// Of the objects' materials (and what these mix), all lights, and the camera's lens.
+Features features_of(const Scene& scene, const Camera& camera);
+/// Everything there is, in one program: the same bits, later.
+Features all_features();
+
+/// Source of the path tracer for these features: definitions, then every kernel file it needs,
+/// once, in order of inclusion. The lane count is not in it (it is the build option DS_LANES: it
+/// changes no bit of a picture).
+std::string path_program_text(const Features& features);
+/// Source of mask and depth; of single rays.
+std::string geometry_program_text();
+std::string rays_program_text();
+
+/// A kernel file with its includes put in place; each file once.
+std::string assemble(const std::string& definitions, std::string_view root_path);
+/// Without comments, blank lines and trailing spaces: what the render key takes of a program.
+std::string strip_comments(std::string_view text);
+
+}  // namespace ds

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/device/scene_pack.h"
+
+#include "tracer/base/error.h"
+#include "tracer/device/texture_code.h"
+#include "tracer/kernels/all_nodes.h"
+#include "tracer/scene/type_tables.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace ds {
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+
+std::vector<Corners> all_corners(const Scene& scene) {
+  std::vector<Corners> corners;
+  for (const Object& object : scene.objects) {
+    const Mesh& mesh = object.mesh;
+    for (const auto& t : mesh.triangles)
+      corners.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
+  }
+  return corners;
+}
+
+/// Unit normal, in double so that no triangle is too small; zero for one without area.
+Vec3 face_normal(const Corners& c) {
+  return to_float(
+      normalized(cross(to_double(c[1]) - to_double(c[0]), to_double(c[2]) - to_double(c[0]))));
+}
+
+void pack_object(const Object& object, std::uint32_t light, Words& out) {
+  const Mesh& mesh = object.mesh;
+  for (const auto& t : mesh.triangles) {
+    const Corners corners = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+    for (const Vec3& p : corners)
+      out.add(p);
+    for (const std::uint32_t i : t)
+      out.add(mesh.normals.empty() || mesh.normals[i] == Vec3{} ? face_normal(corners)
+                                                                : mesh.normals[i]);
+    for (const std::uint32_t i : t) {
+      out.add(mesh.uvs.empty() ? 0.0f : mesh.uvs[i].x);
+      out.add(mesh.uvs.empty() ? 0.0f : mesh.uvs[i].y);
+    }
+    out.add(static_cast<std::uint32_t>(object.material));
+    out.add(light);
+    out.add(object.id);
+    out.add(object.camera_invisible ? std::uint32_t{kernels::k_flag_camera_invisible} : 0u);
+  }
+}
+
+/// Offsets in tables of the images' texels; each image once. Infinite lights take theirs from here
+/// too.
+std::vector<std::uint32_t> pack_texels(const Scene& scene, Words& tables) {
+  std::vector<std::uint32_t> offsets;
+  for (const Image& image : scene.images) {
+    DS_ASSERT(image.width > 0 && image.rgb.size() == std::size_t{3} *
+                                                         static_cast<std::size_t>(image.width) *
+                                                         static_cast<std::size_t>(image.height));
+    offsets.push_back(tables.offset());
+    for (const float value : image.rgb)
+      tables.add(value);
+  }
+  return offsets;
+}
+
+/// The material's program with the scene's numbers put in; its offset, or k_none.
+std::uint32_t pack_program(const Scene& scene, const Material& material, const Features& features,
+                           const std::vector<std::uint32_t>& texels, Words& programs) {
+  TextureCode code = texture_code(scene, material);
+  if (code.words.empty()) return k_none;
+  for (const std::size_t i : code.op_words) {
+    const std::size_t row = code.words[i] - std::uint32_t{kernels::op_texture};
+    const int number = Features::number(features.textures, texture_types()[row].kernel_prefix);
+    code.words[i] = std::uint32_t{kernels::op_texture} + static_cast<std::uint32_t>(number);
+  }
+  for (const std::size_t i : code.image_words)
+    code.words[i] = texels[code.words[i]];
+  const std::uint32_t offset = programs.offset();
+  for (const std::uint32_t word : code.words)
+    programs.add(word);
+  return offset;
+}
+
+void pack_inputs(const Material& material, Words& out) {
+  const NodeType& type = material_types()[static_cast<std::size_t>(material.type)];
+  for (std::size_t i = 0; i < type.inputs.size(); ++i) {
+    const Vec3 value = material.inputs[i].texture < 0 ? material.inputs[i].constant : Vec3{};
+    out.add(value.x);
+    if (type.inputs[i].width == 3) {
+      out.add(value.y);
+      out.add(value.z);
+    }
+  }
+}
+
+void pack_materials(const Scene& scene, const Features& features,
+                    const std::vector<std::uint32_t>& texels, PackedScene& packed) {
+  const auto row_words =
+      static_cast<std::uint32_t>(kernels::k_material_head + features.material_inputs);
+  packed.data.material_words = row_words;
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    const Material& material = scene.materials[i];
+    const std::string_view prefix =
+        material_types()[static_cast<std::size_t>(material.type)].kernel_prefix;
+    Words& out = packed.materials;
+    const int number = Features::number(features.materials, prefix);
+    // Mix's number follows the last material's (program_text.cc). A material that nothing shows has
+    // no number.
+    out.add(static_cast<std::uint32_t>(number >= 0 ? number
+                                                   : static_cast<int>(features.materials.size())));
+    out.add(pack_program(scene, material, features, texels, packed.programs));
+    for (const int child : material.children)
+      out.add(static_cast<std::uint32_t>(std::max(child, 0)));
+    out.add(material.emission.constant);
+    out.pad_to(i * row_words + kernels::k_material_head);
+    if (number >= 0 || prefix == "mix") pack_inputs(material, out);
+    out.pad_to((i + 1) * row_words);
+  }
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> first_triangles(const Scene& scene) {
+  std::vector<std::uint32_t> first;
+  std::uint32_t count = 0;
+  for (const Object& object : scene.objects) {
+    first.push_back(count);
+    count += static_cast<std::uint32_t>(object.mesh.triangles.size());
+  }
+  return first;
+}
+
+PackedScene pack_scene(const Scene& scene, const Features& features, float filter_width,
+                       BvhQuality quality) {
+  const std::vector<Corners> corners = all_corners(scene);
+  if (corners.empty()) fail(ErrorKind::asset, "the scene has no triangle");
+  PackedScene packed;
+  packed.bvh = build_bvh(corners, quality);
+  packed.data.reach = packed.bvh.reach;
+  const std::vector<std::uint32_t> texels = pack_texels(scene, packed.tables);
+  packed.data.filter_table = pack_filter(filter_width, packed.tables);
+  pack_materials(scene, features, texels, packed);
+  std::vector<std::uint32_t> mesh_lights;
+  pack_lights(scene, features, packed, mesh_lights);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    pack_object(scene.objects[i], mesh_lights[i], packed.triangles);
+  return packed;
+}
+
+}  // namespace ds

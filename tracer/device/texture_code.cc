@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/device/texture_code.h"
+
+#include "tracer/base/error.h"
+#include "tracer/kernels/all_nodes.h"
+#include "tracer/scene/type_tables.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace ds {
+namespace {
+
+std::uint32_t word_of(float value) {
+  return std::bit_cast<std::uint32_t>(value);
+}
+
+/// Emits instructions for a texture graph, inputs before the texture that takes them.
+class Emitter {
+ public:
+  Emitter(const Scene& scene, TextureCode& code) : scene_(scene), code_(code) {}
+
+  void push(const TextureRef& ref) {
+    if (ref.texture < 0) {
+      begin(kernels::op_constant);
+      for (const float c : {ref.constant.x, ref.constant.y, ref.constant.z})
+        code_.words.push_back(word_of(c));
+      end();
+      grow();
+      return;
+    }
+    const Texture& texture = scene_.textures[static_cast<std::size_t>(ref.texture)];
+    for (const TextureRef& input : texture.inputs)
+      push(input);
+    depth_ -= static_cast<int>(texture.inputs.size());
+    emit_texture(texture);
+    grow();
+  }
+
+  void store(int slot, int width) {
+    begin(kernels::op_store);
+    code_.words.push_back(static_cast<std::uint32_t>(slot));
+    code_.words.push_back(static_cast<std::uint32_t>(width));
+    end();
+    --depth_;
+  }
+
+  void finish() {
+    begin(kernels::op_end);
+    end();
+  }
+
+ private:
+  void begin(std::uint32_t op) {
+    start_ = code_.words.size();
+    code_.words.push_back(op);
+    code_.words.push_back(0);
+  }
+  void end() { code_.words[start_ + 1] = static_cast<std::uint32_t>(code_.words.size() - start_); }
+
+  void grow() {
+    code_.stack = std::max(code_.stack, ++depth_);
+    if (depth_ > k_texture_stack_limit)
+      fail(ErrorKind::asset, "a texture graph needs more than {} values at once",
+           k_texture_stack_limit);
+  }
+
+  void emit_texture(const Texture& texture) {
+    begin(static_cast<std::uint32_t>(kernels::op_texture + texture.type));
+    code_.op_words.push_back(start_);
+    code_.types.push_back(texture.type);
+    if (texture.image >= 0) {
+      emit_image(texture);
+    } else {
+      for (std::size_t i = 0; i < 12; ++i)
+        code_.words.push_back(word_of(static_cast<float>(texture.world_to_texture.m[i])));
+      for (const float number : texture.numbers)
+        code_.words.push_back(word_of(number));
+    }
+    end();
+  }
+
+  void emit_image(const Texture& texture) {
+    for (const float number : texture.uv_transform)
+      code_.words.push_back(word_of(number));
+    code_.words.insert(code_.words.end(), kernels::k_instruction_transform - 6, 0);
+    const Image& image = scene_.images[static_cast<std::size_t>(texture.image)];
+    code_.image_words.push_back(code_.words.size());
+    code_.words.push_back(static_cast<std::uint32_t>(texture.image));
+    code_.words.push_back(static_cast<std::uint32_t>(image.width));
+    code_.words.push_back(static_cast<std::uint32_t>(image.height));
+    code_.words.push_back(static_cast<std::uint32_t>(image.wrap));
+    code_.words.push_back(image.filter == ImageFilter::linear ? 1u : 0u);
+  }
+
+  const Scene& scene_;
+  TextureCode& code_;
+  std::size_t start_ = 0;
+  int depth_ = 0;
+};
+
+}  // namespace
+
+TextureCode texture_code(const Scene& scene, const Material& material) {
+  TextureCode code;
+  Emitter emitter(scene, code);
+  const NodeType& type = material_types()[static_cast<std::size_t>(material.type)];
+  int slot = 0;
+  for (std::size_t i = 0; i < material.inputs.size(); ++i) {
+    if (material.inputs[i].texture >= 0) {
+      emitter.push(material.inputs[i]);
+      emitter.store(slot, type.inputs[i].width);
+    }
+    slot += type.inputs[i].width;
+  }
+  if (!code.words.empty()) emitter.finish();
+  std::sort(code.types.begin(), code.types.end());
+  code.types.erase(std::unique(code.types.begin(), code.types.end()), code.types.end());
+  return code;
+}
+
+}  // namespace ds

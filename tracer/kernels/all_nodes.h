@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every material, texture and light as C++ functions, one lane wide, in namespace ds::kernels. For the host's tables,
+// for packing, and for tests against closed forms.
+#pragma once
+
+#include "tracer/kernels/layout.h"
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+// One signature serves all nodes, so some leave parameters unused; casts are spelled as OpenCL C has them.
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#pragma GCC diagnostic ignored "-Wold-style-cast"
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wshadow"
+#pragma GCC diagnostic ignored "-Wpedantic"
+#endif
+
+namespace ds::kernels {
+#include "tracer/kernels/lights/constant_infinite.h"
+#include "tracer/kernels/lights/infinite.h"
+#include "tracer/kernels/lights/mesh.h"
+#include "tracer/kernels/lights/point.h"
+#include "tracer/kernels/lights/spot.h"
+#include "tracer/kernels/lights/sun.h"
+#include "tracer/kernels/materials/glass.h"
+#include "tracer/kernels/materials/glossy2.h"
+#include "tracer/kernels/materials/matte.h"
+#include "tracer/kernels/materials/metal2.h"
+#include "tracer/kernels/materials/mirror.h"
+#include "tracer/kernels/materials/mix.h"
+#include "tracer/kernels/textures/add.h"
+#include "tracer/kernels/textures/checkerboard3d.h"
+#include "tracer/kernels/textures/fbm.h"
+#include "tracer/kernels/textures/imagemap.h"
+#include "tracer/kernels/textures/marble.h"
+#include "tracer/kernels/textures/mix_texture.h"
+#include "tracer/kernels/textures/scale.h"
+#include "tracer/kernels/textures/subtract.h"
+#include "tracer/kernels/texture_program.h"
+}  // namespace ds::kernels
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif

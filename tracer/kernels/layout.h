@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+// The data layout of types.h as C++, in namespace ds::kernels.
+#pragma once
+
+#include "tracer/kernels/host.h"
+
+namespace ds::kernels {
+#include "tracer/kernels/types.h"
+}  // namespace ds::kernels

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lambert's law on both sides: f = kd / pi.
+#pragma once
+
+#include "tracer/kernels/bsdf.h"
+
+#define DS_MATTE_INPUTS(INPUT) INPUT(matte_kd, 3, 0.75f)
+#define DS_MATTE_NUMBERS(NUMBER)
+enum { DS_MATTE_INPUTS(DS_SLOT) matte_end };
+
+DS_FN BsdfValue matte_evaluate(const real* p, Viewer viewer, real3 wi) {
+  BsdfValue v;
+  const real cosine = greater(wi.z, (real)(0.0f));
+  v.value = scale(input3(p, matte_kd), cosine * DS_INV_PI);
+  v.pdf = cosine * DS_INV_PI;
+  return v;
+}
+
+DS_FN BsdfSample matte_sample(const real* p, Viewer viewer, real2 u, real2 lobe) {
+  BsdfSample s = no_sample();
+  s.wi = cosine_hemisphere(u);
+  s.weight = input3(p, matte_kd);
+  s.pdf = s.wi.z * DS_INV_PI;
+  s.valid = all_lanes();
+  return s;
+}

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// A perfect mirror of reflectance kr.
+#pragma once
+
+#include "tracer/kernels/bsdf.h"
+
+#define DS_MIRROR_INPUTS(INPUT) INPUT(mirror_kr, 3, 1.0f)
+#define DS_MIRROR_NUMBERS(NUMBER)
+enum { DS_MIRROR_INPUTS(DS_SLOT) mirror_end };
+
+DS_FN BsdfValue mirror_evaluate(const real* p, Viewer viewer, real3 wi) { return no_value(); }
+
+DS_FN BsdfSample mirror_sample(const real* p, Viewer viewer, real2 u, real2 lobe) {
+  BsdfSample s = no_sample();
+  s.wi = vec(-viewer.wo.x, -viewer.wo.y, viewer.wo.z);
+  s.weight = input3(p, mirror_kr);
+  s.valid = s.specular = all_lanes();
+  return s;
+}

@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: Apache-2.0
+// The path tracer: unidirectional, next-event estimation, multiple importance sampling, Russian roulette. One work-item
+// owns DS_LANES pixels. A lane whose path has ended starts its pixel's next sample at once, so lanes stay busy; a pixel's
+// samples are added in order, so the picture does not depend on how pixels are dealt out.
+#include "tracer/kernels/bvh.cl"
+#include "tracer/kernels/camera.h"
+#include "tracer/kernels/shade.h"
+
+/// Pairs of dimensions a sample uses: two for the camera, then k_pairs_vertex at each path vertex.
+enum { k_pair_filter, k_pair_lens, k_pairs_camera };
+enum { k_pair_choices, k_pair_light, k_pair_direction, k_pair_lobe, k_pairs_vertex };
+
+typedef struct {
+  real3 origin, direction;
+  real3 throughput, radiance;
+  real pdf;          ///< of the BSDF sample that made this ray; -1: only this ray could find what it meets
+  real eta_scale;    ///< product of refractions' radiance scales: roulette must not mistake it for loss
+  natural vertices;  ///< surface points visited
+  natural diffuse, glossy, specular;  ///< bounces of each sort
+  natural sample;    ///< number of the sample in flight
+  mask alive;
+} Paths;
+
+typedef struct {
+  natural index;  ///< y * width + x; 0 where outside
+  real x, y;      ///< of the pixel's centre
+  mask inside;
+} Pixels;
+
+typedef struct {
+  const __global float8* nodes;
+  const __global float8* leaves;
+  DS_GLOBAL float* triangles;
+  MaterialTables materials;
+  LightTables lights;
+} SceneTables;
+
+/// Pixels of this work-item: 8x8 tiles, within them blocks of 4x4, so that lanes look at neighbouring things.
+DS_FN Pixels pixels_of(uint item, const ViewData* view) {
+  const natural i = item * (uint)DS_LANES + DS_LANE_NUMBERS;
+  const natural tile = i >> 6;
+  const natural block = (i >> 4) & 3u;
+  const natural x = (tile % view->tiles_x) * 8u + (block & 1u) * 4u + (i & 3u);
+  const natural y = (tile / view->tiles_x) * 8u + (block >> 1) * 4u + ((i >> 2) & 3u);
+  Pixels p;
+  p.inside = (x < view->width) & (y < view->height);
+  p.index = choose_natural(p.inside, y * view->width + x, (natural)(0u));
+  p.x = to_real(x) + 0.5f;
+  p.y = to_real(y) + 0.5f;
+  return p;
+}
+
+/// Starts the next sample in the lanes of `start`.
+DS_FN void start_paths(Paths* paths, mask start, const Pixels* pixels, const SceneData* scene, const ViewData* view,
+                       const SceneTables* t) {
+  const Sampler sampler = sampler_for(view->seed_low, view->seed_high, pixels->index, paths->sample);
+  const real2 f = sample_pair(sampler, (natural)((uint)k_pair_filter));
+  DS_GLOBAL float* filter = t->lights.tables + scene->filter_table;
+  real2 lens;
+  lens.x = lens.y = (real)(0.0f);
+#ifdef DS_LENS
+  lens = sample_pair(sampler, (natural)((uint)k_pair_lens));
+#endif
+  const CameraRay ray = camera_ray(view, pixels->x + filter_offset(filter, f.x), pixels->y + filter_offset(filter, f.y), lens);
+  const real zero = (real)(0.0f);
+  const natural none = (natural)(0u);
+  paths->origin = choose(start, ray.origin, paths->origin);
+  paths->direction = choose(start, ray.direction, paths->direction);
+  paths->throughput = choose(start, splat((real)(1.0f)), paths->throughput);
+  paths->radiance = choose(start, splat(zero), paths->radiance);
+  paths->pdf = choose(start, (real)(-1.0f), paths->pdf);
+  paths->eta_scale = choose(start, (real)(1.0f), paths->eta_scale);
+  paths->vertices = choose_natural(start, none, paths->vertices);
+  paths->diffuse = choose_natural(start, none, paths->diffuse);
+  paths->glossy = choose_natural(start, none, paths->glossy);
+  paths->specular = choose_natural(start, none, paths->specular);
+  paths->alive = paths->alive | start;
+}
+
+/// Lane-by-lane copies of what tracing needs and finds; the only place where lanes are taken apart.
+typedef struct {
+  float origin[3][DS_LANES] __attribute__((aligned(64)));
+  float direction[3][DS_LANES] __attribute__((aligned(64)));
+  float t_max[DS_LANES] __attribute__((aligned(64)));
+  int wanted[DS_LANES] __attribute__((aligned(64)));
+} LaneRays;
+
+DS_FN void store_rays(LaneRays* rays, real3 origin, real3 direction, real t_max, mask wanted) {
+  *(real*)rays->origin[0] = origin.x;
+  *(real*)rays->origin[1] = origin.y;
+  *(real*)rays->origin[2] = origin.z;
+  *(real*)rays->direction[0] = direction.x;
+  *(real*)rays->direction[1] = direction.y;
+  *(real*)rays->direction[2] = direction.z;
+  *(real*)rays->t_max = t_max;
+  *(mask*)rays->wanted = wanted;
+}
+
+DS_FN Ray lane_ray(const LaneRays* rays, int lane) {
+  Ray ray;
+  for (int axis = 0; axis < 3; ++axis) {
+    ray.origin[axis] = rays->origin[axis][lane];
+    ray.direction[axis] = rays->direction[axis][lane];
+  }
+  ray.t_max = rays->t_max[lane];
+  return ray;
+}
+
+/// A triangle's corners' values and the hit's place in it, lane by lane.
+enum { k_hit_weights = k_triangle_words, k_hit_words = k_triangle_words + 2 };
+typedef struct {
+  float word[k_hit_words][DS_LANES] __attribute__((aligned(64)));
+  int hit[DS_LANES] __attribute__((aligned(64)));
+} LaneHits;
+
+DS_FN void trace_lanes(const SceneTables* t, float reach, const LaneRays* rays, LaneHits* hits) {
+  for (int lane = 0; lane < DS_LANES; ++lane) {
+    hits->hit[lane] = 0;
+    if (!rays->wanted[lane]) continue;
+    const Hit hit = nearest_hit(t->nodes, t->leaves, reach, lane_ray(rays, lane));
+    if (hit.id == k_none) continue;
+    DS_GLOBAL float* triangle = t->triangles + hit.id * k_triangle_words;
+    for (int i = 0; i < k_triangle_words; ++i)
+      hits->word[i][lane] = triangle[i];
+    hits->word[k_hit_weights][lane] = hit.b1;
+    hits->word[k_hit_weights + 1][lane] = hit.b2;
+    hits->hit[lane] = -1;
+  }
+}
+
+DS_FN real hit_word(const LaneHits* hits, int i) { return *(const real*)hits->word[i]; }
+DS_FN real3 hit_word3(const LaneHits* hits, int i) {
+  return vec(hit_word(hits, i), hit_word(hits, i + 1), hit_word(hits, i + 2));
+}
+
+DS_FN Surface surface_of(const LaneHits* hits, real3 wo) {
+  const real b1 = hit_word(hits, k_hit_weights);
+  const real b2 = hit_word(hits, k_hit_weights + 1);
+  const real b0 = 1.0f - b1 - b2;
+  const real3 p0 = hit_word3(hits, k_triangle_positions);
+  const real3 p1 = hit_word3(hits, k_triangle_positions + 3);
+  const real3 p2 = hit_word3(hits, k_triangle_positions + 6);
+  Surface s;
+  s.position = add_scaled(add_scaled(scale(p0, b0), p1, b1), p2, b2);
+  const real3 size = vec(absolute(p0.x) + absolute(p1.x) + absolute(p2.x), absolute(p0.y) + absolute(p1.y) + absolute(p2.y),
+                         absolute(p0.z) + absolute(p1.z) + absolute(p2.z));
+  s.error = scale(size, (real)(k_position_error));
+  const real3 own = unit(cross(scale(sub(p1, p0), (real)(1e6f)), scale(sub(p2, p0), (real)(1e6f))));
+  s.outside = dot(own, wo) >= 0.0f;
+  const real side = choose(s.outside, (real)(1.0f), (real)(-1.0f));
+  s.normal = scale(own, side);
+  const real3 n0 = hit_word3(hits, k_triangle_normals);
+  const real3 n1 = hit_word3(hits, k_triangle_normals + 3);
+  const real3 n2 = hit_word3(hits, k_triangle_normals + 6);
+  const real3 interpolated = add_scaled(add_scaled(scale(n0, b0), n1, b1), n2, b2);
+  // Opposite corner normals can cancel; the triangle's own normal stands in.
+  const real3 smooth = choose(dot(interpolated, interpolated) > 1e-6f, unit(interpolated), own);
+  s.shading = facing_normal(scale(smooth, side), wo);
+  s.u = fma(b0, hit_word(hits, k_triangle_uvs), fma(b1, hit_word(hits, k_triangle_uvs + 2), b2 * hit_word(hits, k_triangle_uvs + 4)));
+  s.v = fma(b0, hit_word(hits, k_triangle_uvs + 1), fma(b1, hit_word(hits, k_triangle_uvs + 3), b2 * hit_word(hits, k_triangle_uvs + 5)));
+  return s;
+}
+
+#ifdef DS_MESH_LIGHTS
+/// Radiance of an emitting triangle met by chance, weighed against having sampled it.
+DS_FN real3 emitted(const SceneTables* t, const LaneHits* hits, const Surface* s, real3 origin, real3 wo, mask hit, real pdf) {
+  const natural light = bits_of(hit_word(hits, k_triangle_light));
+  const mask emits = hit & (light != k_none) & s->outside;
+  if (!any_lane(emits)) return splat((real)(0.0f));
+  const natural at = choose_natural(emits, light, (natural)(0u)) * (uint)k_light_words;
+  const real probability = load(t->lights.lights, at + (uint)k_light_probability);
+  const real3 radiance = load3(t->lights.lights, at + (uint)(k_light_parameters + mesh_radiance));
+  const real area = load(t->lights.lights, at + (uint)(k_light_parameters + mesh_area));
+  const real3 way = sub(s->position, origin);
+  const real cosine = greater(dot(s->normal, wo), (real)(1e-6f));
+  const real light_pdf = probability * dot(way, way) / (cosine * area);
+  const real weight = choose(pdf < 0.0f, (real)(1.0f), power_heuristic(pdf, light_pdf));
+  return choose(emits, scale(radiance, weight), splat((real)(0.0f)));
+}
+#endif
+
+/// What next-event estimation would add if nothing stood between, and the ray that tells.
+typedef struct {
+  real3 radiance;
+  mask wanted;
+} DirectLight;
+
+#ifdef DS_LIGHTS_SAMPLED
+DS_FN DirectLight direct_light(const Paths* paths, mask active, const Surface* s, const MaterialPoint* m, Frame frame,
+                               Viewer viewer, Sampler sampler, natural pair, real choice, const SceneData* scene,
+                               const SceneTables* t, LaneRays* rays) {
+  const LightSample light = sample_light(t->lights, scene->light_table, scene->light_count, active, s->position, choice,
+                                         sample_pair(sampler, pair + (uint)k_pair_light));
+  const BsdfValue bsdf = evaluate_material(m, viewer, to_local(frame, light.wi));
+  const real weight = choose(light.dirac, (real)(1.0f), power_heuristic(light.pdf, bsdf.pdf));
+  const real3 arriving = scale(light.radiance, weight / greater(light.pdf, (real)(1e-30f)));
+  DirectLight d;
+  d.radiance = mul(mul(paths->throughput, bsdf.value), arriving);
+  d.wanted = active & (light.pdf > 0.0f) & (max_component(d.radiance) > 0.0f) & (dot(light.wi, s->normal) > 0.0f);
+  const real3 origin = offset_origin(s->position, s->error, s->normal, light.wi);
+  const real3 way = sub(light.target, origin);
+  const real distance = sqrt(greater(dot(way, way), (real)(1e-30f)));
+  // Short of the light by 1e-4 of the way, so that an emitting surface does not shadow itself.
+  store_rays(rays, origin, choose(light.bounded, scale(way, 1.0f / distance), light.wi),
+             choose(light.bounded, distance * 0.9999f, (real)(1e30f)), d.wanted);
+  return d;
+}
+
+DS_FN void add_unshadowed(Paths* paths, DirectLight d, const SceneTables* t, float reach, const LaneRays* rays) {
+  int clear[DS_LANES] __attribute__((aligned(64)));
+  for (int lane = 0; lane < DS_LANES; ++lane) {
+    clear[lane] = rays->wanted[lane] && !any_hit(t->nodes, t->leaves, reach, lane_ray(rays, lane)) ? -1 : 0;
+  }
+  const mask lit = d.wanted & (*(mask*)clear != 0);
+  paths->radiance = add(paths->radiance, choose(lit, d.radiance, splat((real)(0.0f))));
+}
+#endif
+
+/// Continues the paths by a BSDF sample; returns the lanes whose path ends here.
+DS_FN mask scatter(Paths* paths, mask active, const Surface* s, const MaterialPoint* m, Frame frame, Viewer viewer,
+                   Sampler sampler, natural pair, real lobe_choice, real roulette, const ViewData* view) {
+  real2 lobe;
+  lobe.x = lobe_choice;
+  lobe.y = (real)(0.0f);
+  const BsdfSample b = sample_material(m, viewer, sample_pair(sampler, pair + (uint)k_pair_direction), lobe);
+  const real3 wi = to_world(frame, b.wi);
+  // A sampled direction must leave on the side its lobe is on, also by the true surface: light does not leak through.
+  const real true_side = dot(wi, s->normal);
+  const mask leaks = choose(b.wi.z > 0.0f, true_side, -true_side) <= 0.0f;
+  const real3 throughput = mul(paths->throughput, b.weight);
+  const real eta_scale = paths->eta_scale * b.eta_scale;
+  const mask plays = paths->vertices >= view->roulette_depth;
+  const real survival = choose(plays, lesser(greater(max_component(throughput) / eta_scale, (real)(view->roulette_cap)), (real)(1.0f)), (real)(1.0f));
+  const mask matte = !(b.specular | b.glossy);
+  paths->diffuse += choose_natural(matte, (natural)(1u), (natural)(0u));
+  paths->glossy += choose_natural(b.glossy & !b.specular, (natural)(1u), (natural)(0u));
+  paths->specular += choose_natural(b.specular, (natural)(1u), (natural)(0u));
+  const mask too_deep = (paths->diffuse > view->depth_diffuse) | (paths->glossy > view->depth_glossy) |
+                        (paths->specular > view->depth_specular);
+  const mask ends = !b.valid | leaks | (roulette >= survival) | (max_component(throughput) <= 0.0f) | too_deep;
+  paths->throughput = choose(active, scale(throughput, 1.0f / survival), paths->throughput);
+  paths->eta_scale = choose(active, eta_scale, paths->eta_scale);
+  paths->pdf = choose(active, choose(b.specular, (real)(-1.0f), b.pdf), paths->pdf);
+  paths->origin = choose(active, offset_origin(s->position, s->error, s->normal, wi), paths->origin);
+  paths->direction = choose(active, unit(wi), paths->direction);
+  return active & ends;
+}
+
+/// The pixels' running sums while this work-item works on them.
+typedef struct {
+  real sum[3], compensation[3];
+  real rejected;
+} Sums;
+
+DS_FN void load_sums(Sums* sums, const __global float* film, const Pixels* pixels, uint plane) {
+  for (int c = 0; c < 3; ++c) {
+    sums->sum[c] = load(film + (k_film_sum + c) * plane, pixels->index);
+    sums->compensation[c] = load(film + (k_film_compensation + c) * plane, pixels->index);
+  }
+  sums->rejected = load(film + k_film_rejected * plane, pixels->index);
+}
+
+/// Adds the finished samples in `done`. Neumaier 1974: what the sum's rounding cuts off is summed beside it.
+DS_FN void add_samples(Sums* sums, mask done, real3 radiance) {
+  const real sample[3] = {radiance.x, radiance.y, radiance.z};
+  mask good = done;
+  for (int c = 0; c < 3; ++c)
+    good = good & (sample[c] >= 0.0f) & (sample[c] <= 1e30f);
+  for (int c = 0; c < 3; ++c) {
+    const real x = choose(good, sample[c], (real)(0.0f));
+    const real total = sums->sum[c] + x;
+    const mask sum_is_greater = absolute(sums->sum[c]) >= absolute(x);
+    const real lost = choose(sum_is_greater, (sums->sum[c] - total) + x, (x - total) + sums->sum[c]);
+    sums->compensation[c] = sums->compensation[c] + lost;
+    sums->sum[c] = total;
+  }
+  sums->rejected = sums->rejected + choose(done & !good, (real)(1.0f), (real)(0.0f));
+}
+
+DS_FN void store_sums(const Sums* sums, __global float* film, const Pixels* pixels, uint plane) {
+  float value[k_film_planes][DS_LANES] __attribute__((aligned(64)));
+  uint index[DS_LANES] __attribute__((aligned(64)));
+  int inside[DS_LANES] __attribute__((aligned(64)));
+  for (int c = 0; c < 3; ++c) {
+    *(real*)value[k_film_sum + c] = sums->sum[c];
+    *(real*)value[k_film_compensation + c] = sums->compensation[c];
+  }
+  *(real*)value[k_film_rejected] = sums->rejected;
+  *(natural*)index = pixels->index;
+  *(mask*)inside = pixels->inside;
+  for (int lane = 0; lane < DS_LANES; ++lane) {
+    if (!inside[lane]) continue;
+    for (int i = 0; i < k_film_planes; ++i)
+      film[i * plane + index[lane]] = value[i][lane];
+  }
+}
+
+/// One step of all paths: to the next surface, its light, its scattering. Returns the lanes whose sample is complete.
+DS_FN mask advance(Paths* paths, const Pixels* pixels, const SceneData* scene, const ViewData* view, const SceneTables* t) {
+  LaneRays rays;
+  LaneHits hits;
+  store_rays(&rays, paths->origin, paths->direction, (real)(1e30f), paths->alive);
+  trace_lanes(t, scene->reach, &rays, &hits);
+  const mask hit = paths->alive & (*(mask*)hits.hit != 0);
+  const mask escapes = paths->alive & !hit;
+  mask done = escapes;
+#ifdef DS_ESCAPE_LIGHTS
+  if (any_lane(escapes)) {
+    const real3 sky = escape_radiance(t->lights, scene->first_escape_light, scene->light_count, paths->direction, paths->pdf);
+    paths->radiance = choose(escapes, add(paths->radiance, mul(paths->throughput, sky)), paths->radiance);
+  }
+#endif
+  if (!any_lane(hit)) return done;
+  const real3 wo = negate(paths->direction);
+  const Surface s = surface_of(&hits, wo);
+#ifdef DS_MESH_LIGHTS
+  paths->radiance = add(paths->radiance, mul(paths->throughput, emitted(t, &hits, &s, paths->origin, wo, hit, paths->pdf)));
+#endif
+  const mask last = hit & (paths->vertices >= view->depth_total);
+  done = done | last;
+  const mask active = hit & !last;
+  if (!any_lane(active)) return done;
+  const Sampler sampler = sampler_for(view->seed_low, view->seed_high, pixels->index, paths->sample);
+  const natural pair = paths->vertices * (uint)k_pairs_vertex + (uint)k_pairs_camera;
+  paths->vertices += choose_natural(active, (natural)(1u), (natural)(0u));
+  const real2 choices = sample_pair(sampler, pair + (uint)k_pair_choices);
+  real lobe_choice = (real)(0.0f);
+#ifdef DS_LOBE_CHOICE
+  lobe_choice = sample_pair(sampler, pair + (uint)k_pair_lobe).x;
+#endif
+  MaterialPoint m;
+  natural material = choose_natural(hit, bits_of(hit_word(&hits, k_triangle_material)), (natural)(0u));
+#ifdef DS_MIX_NUMBER
+  material = resolve_mix(t->materials, material, active, &s, &lobe_choice, &m);
+#else
+  read_material(t->materials, material, active, &s, &m);
+#endif
+  const Frame frame = frame_around(s.shading);
+  Viewer viewer;
+  viewer.wo = to_local(frame, wo);
+  viewer.wo.z = greater(viewer.wo.z, (real)(1e-3f));
+  viewer.outside = s.outside;
+#ifdef DS_LIGHTS_SAMPLED
+  const DirectLight direct = direct_light(paths, active, &s, &m, frame, viewer, sampler, pair, choices.x, scene, t, &rays);
+  if (any_lane(direct.wanted)) add_unshadowed(paths, direct, t, scene->reach, &rays);
+#endif
+  return done | scatter(paths, active, &s, &m, frame, viewer, sampler, pair, lobe_choice, choices.y, view);
+}
+
+__kernel void trace_paths(const __global float8* restrict nodes, const __global float8* restrict leaves,
+                          const __global float* restrict triangles, const __global float* restrict materials,
+                          const __global float* restrict programs, const __global float* restrict lights,
+                          const __global float* restrict tables, const __global SceneData* restrict scene_data,
+                          const __global ViewData* restrict view_data, __global float* restrict film) {
+  const SceneData scene = *scene_data;
+  const ViewData view = *view_data;
+  SceneTables t;
+  t.nodes = nodes;
+  t.leaves = leaves;
+  t.triangles = triangles;
+  t.materials.materials = materials;
+  t.materials.programs = programs;
+  t.materials.tables = tables;
+  t.materials.material_words = scene.material_words;
+  t.lights.lights = lights;
+  t.lights.tables = tables;
+  t.lights.triangles = triangles;
+  const Pixels pixels = pixels_of((uint)get_global_id(0), &view);
+  const uint plane = view.width * view.height;
+  Sums sums;
+  load_sums(&sums, film, &pixels, plane);
+  Paths paths;
+  paths.alive = (mask)(0);
+  paths.sample = (natural)(view.sample_begin);
+  start_paths(&paths, pixels.inside & (paths.sample < view.sample_end), &pixels, &scene, &view, &t);
+  while (any_lane(paths.alive)) {
+    const mask done = advance(&paths, &pixels, &scene, &view, &t);
+    if (!any_lane(done)) continue;
+    add_samples(&sums, done, paths.radiance);
+    paths.alive = paths.alive & !done;
+    paths.sample += choose_natural(done, (natural)(1u), (natural)(0u));
+    const mask start = done & (paths.sample < view.sample_end);
+    if (any_lane(start)) start_paths(&paths, start, &pixels, &scene, &view, &t);
+  }
+  store_sums(&sums, film, &pixels, plane);
+}

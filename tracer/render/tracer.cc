@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/base/error.h"
+#include "tracer/device/opencl.h"
+#include "tracer/device/program_text.h"
+#include "tracer/device/scene_pack.h"
+#include "tracer/render/images.h"
+#include "tracer/render/render.h"
+#include "tracer/render/view.h"
+#include "tracer/scene/sdl.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+namespace ds {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// A scene's tables in device memory.
+struct DeviceScene {
+  Buffer nodes, leaves, triangles, materials, programs, lights, tables, data;
+  float reach = 0;
+};
+
+DeviceScene upload(const Device& device, const PackedScene& packed) {
+  DeviceScene s;
+  s.nodes = device.upload(packed.bvh.nodes);
+  s.leaves = device.upload(packed.bvh.leaves);
+  s.triangles = device.upload(packed.triangles.words());
+  s.materials = device.upload(packed.materials.words());
+  s.programs = device.upload(packed.programs.words());
+  s.lights = device.upload(packed.lights.words());
+  s.tables = device.upload(packed.tables.words());
+  s.data = device.upload(std::as_bytes(std::span(&packed.data, 1)));
+  s.reach = packed.data.reach;
+  return s;
+}
+
+std::size_t round_up(std::size_t value, std::size_t step) {
+  return (value + step - 1) / step * step;
+}
+
+/// Mean radiance from sums and what their rounding cut off.
+Film film_from_sums(const std::vector<float>& sums, int width, int height, int spp) {
+  Film film;
+  film.width = width;
+  film.height = height;
+  const std::size_t plane = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  film.rgb.resize(plane * 3);
+  for (std::size_t i = 0; i < plane; ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double sum = double{sums[(kernels::k_film_sum + c) * plane + i]} +
+                         double{sums[(kernels::k_film_compensation + c) * plane + i]};
+      film.rgb[i * 3 + c] = static_cast<float>(sum / spp);
+    }
+    film.rejected_samples += static_cast<std::uint64_t>(sums[kernels::k_film_rejected * plane + i]);
+  }
+  return film;
+}
+
+}  // namespace
+
+struct Tracer::State {
+  explicit State(const TracerOptions& o) : options(o), device(o.device) {
+    lanes = options.lanes != 0 ? options.lanes : device.info().is_cpu ? 8 : 1;
+    local_size =
+        options.work_group_size != 0 ? static_cast<std::size_t>(options.work_group_size) : 8;
+  }
+
+  /// The packed scene depends on the features (numbers) and the filter: both may change from
+  /// picture to picture.
+  void prepare(const Camera& camera, const EngineSettings& engine) {
+    if (!scene) fail(ErrorKind::device, "no scene was set before tracing");
+    const Features wanted = options.full_program ? all_features() : features_of(*scene, camera);
+    // The lens changes the program, not the numbers in the tables.
+    Features numbering = wanted;
+    numbering.lens = false;
+    if (!packed_for || *packed_for != numbering || packed_filter != engine.filter_width) {
+      device_scene = upload(device, pack_scene(*scene, wanted, engine.filter_width, quality()));
+      packed_for = numbering;
+      packed_filter = engine.filter_width;
+    }
+    if (!program_for || *program_for != wanted || program_math != engine.math) {
+      path_program =
+          device.build(path_program_text(wanted), build_options(engine.math), options.cache_folder);
+      path_kernel = device.kernel(path_program, "trace_paths");
+      program_for = wanted;
+      program_math = engine.math;
+    }
+  }
+
+  BvhQuality quality() const {
+    return options.high_quality_bvh ? BvhQuality::high : BvhQuality::medium;
+  }
+
+  std::string build_options(MathMode math) const {
+    return fmt::format("{} -DDS_LANES={}",
+                       math == MathMode::strict ? k_strict_options : k_fast_options, lanes);
+  }
+
+  TracerOptions options;
+  Device device;
+  int lanes = 8;
+  std::size_t local_size = 8;
+  std::optional<Scene> scene;
+  DeviceScene device_scene;
+  std::optional<Features> packed_for, program_for;
+  float packed_filter = 0;
+  MathMode program_math = MathMode::strict;
+  Program path_program, geometry_program;
+  Kernel path_kernel, geometry_kernel;
+  bool has_geometry_program = false;
+};
+
+Tracer::Tracer(const TracerOptions& options) : state_(std::make_unique<State>(options)) {}
+Tracer::~Tracer() = default;
+
+std::string Tracer::device_name() const {
+  return state_->device.info().name;
+}
+
+void Tracer::set_scene(const Scene& scene) {
+  state_->scene = scene;
+  load_images(*state_->scene);
+  state_->packed_for.reset();
+}
+
+Film Tracer::trace(const Camera& camera, const EngineSettings& engine,
+                   const std::function<void(const TraceProgress&)>& progress,
+                   const std::atomic<bool>* stop) {
+  State& s = *state_;
+  s.prepare(camera, engine);
+  const kernels::ViewData view = view_data(camera, engine);
+  const std::size_t pixels = static_cast<std::size_t>(view.width) * view.height;
+  const Buffer film = s.device.make_buffer(pixels * kernels::k_film_planes * sizeof(float));
+  s.device.fill_zero(film);
+  const Buffer view_buffer = s.device.upload(std::as_bytes(std::span(&view, 1)));
+  const DeviceScene& t = s.device_scene;
+  unsigned argument = 0;
+  for (const Buffer* b : {&t.nodes, &t.leaves, &t.triangles, &t.materials, &t.programs, &t.lights,
+                          &t.tables, &t.data, &view_buffer, &film})
+    s.path_kernel.set(argument++, *b);
+
+  // Whole tiles, dealt out in launches of about half a second: often enough to report and to stop.
+  const std::size_t padded = std::size_t{view.tiles_x} * ((view.height + 7) / 8) * 64;
+  const std::size_t items = round_up(padded / static_cast<std::size_t>(s.lanes), s.local_size);
+  const std::size_t least =
+      s.local_size * std::max<std::size_t>(s.device.info().compute_units, 1) * 8;
+  std::size_t launch = round_up(std::min(items, least), s.local_size);
+  for (std::size_t begin = 0; begin < items;) {
+    if (stop != nullptr && stop->load()) fail(ErrorKind::cancelled, "stopped");
+    const std::size_t count = std::min(launch, items - begin);
+    const auto before = Clock::now();
+    s.device.run(s.path_kernel, begin, count, s.local_size);
+    const double seconds = std::chrono::duration<double>(Clock::now() - before).count();
+    begin += count;
+    launch =
+        round_up(static_cast<std::size_t>(std::clamp(double(count) * 0.5 / std::max(seconds, 1e-4),
+                                                     double(least), double(items))),
+                 s.local_size);
+    if (progress)
+      progress({pixels * static_cast<std::uint64_t>(engine.spp) * begin / items,
+                pixels * static_cast<std::uint64_t>(engine.spp)});
+  }
+  std::vector<float> sums(pixels * kernels::k_film_planes);
+  s.device.read(film, std::as_writable_bytes(std::span(sums)));
+  return film_from_sums(sums, engine.width, engine.height, engine.spp);
+}
+
+Geometry Tracer::trace_geometry(const Camera& camera, int width, int height) {
+  State& s = *state_;
+  if (!s.scene) fail(ErrorKind::device, "no scene was set before tracing");
+  if (!s.packed_for) {
+    // Any numbering will do: mask and depth ask no material.
+    Features features = features_of(*s.scene, camera);
+    features.lens = false;
+    s.device_scene = upload(
+        s.device, pack_scene(*s.scene, features, EngineSettings{}.filter_width, s.quality()));
+    s.packed_for = features;
+    s.packed_filter = EngineSettings{}.filter_width;
+  }
+  if (!s.has_geometry_program) {
+    s.geometry_program =
+        s.device.build(geometry_program_text(), k_strict_options, s.options.cache_folder);
+    s.geometry_kernel = s.device.kernel(s.geometry_program, "trace_geometry");
+    s.has_geometry_program = true;
+  }
+  EngineSettings size;
+  size.width = width;
+  size.height = height;
+  const kernels::ViewData view = view_data(camera, size);
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  const Buffer view_buffer = s.device.upload(std::as_bytes(std::span(&view, 1)));
+  const Buffer objects = s.device.make_buffer(pixels * sizeof(std::uint32_t));
+  const Buffer depths = s.device.make_buffer(pixels * sizeof(float));
+  Kernel& k = s.geometry_kernel;
+  k.set(0, s.device_scene.nodes);
+  k.set(1, s.device_scene.leaves);
+  k.set(2, s.device_scene.triangles);
+  k.set(3, s.device_scene.reach);
+  k.set(4, view_buffer);
+  k.set(5, objects);
+  k.set(6, depths);
+  s.device.run(k, 0, round_up(pixels, s.local_size), s.local_size);
+  Geometry geometry{width, height, std::vector<std::uint8_t>(pixels), std::vector<float>(pixels)};
+  std::vector<std::uint32_t> ids(pixels);
+  s.device.read(objects, std::as_writable_bytes(std::span(ids)));
+  s.device.read(depths, std::as_writable_bytes(std::span(geometry.depth)));
+  for (std::size_t i = 0; i < pixels; ++i)
+    geometry.mask[i] = ids[i] == k_model_object_id ? 255 : 0;
+  return geometry;
+}
+
+}  // namespace ds

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/render/view.h"
+
+#include "tracer/base/canonical.h"
+#include "tracer/base/error.h"
+#include "tracer/device/program_text.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace ds {
+namespace {
+
+void store(float (&out)[3], Vec3d v) {
+  out[0] = static_cast<float>(v.x);
+  out[1] = static_cast<float>(v.y);
+  out[2] = static_cast<float>(v.z);
+}
+
+}  // namespace
+
+double tan_half(double angle_deg) {
+  // tan by three halvings of the angle, its Taylor series (error below 1e-17 under 0.2), and three
+  // doublings.
+  const double x = angle_deg * (3.14159265358979323846 / 180.0) / 2 / 8;
+  const double z = x * x;
+  constexpr std::array terms = {1.0,
+                                1.0 / 3,
+                                2.0 / 15,
+                                17.0 / 315,
+                                62.0 / 2835,
+                                1382.0 / 155925,
+                                21844.0 / 6081075,
+                                929569.0 / 638512875,
+                                6404582.0 / 10854718875.0};
+  double t = 0;
+  for (std::size_t i = terms.size(); i-- > 0;)
+    t = t * z + terms[i];
+  t *= x;
+  for (int i = 0; i < 3; ++i)
+    t = 2 * t / ((1 - t) * (1 + t));
+  return t;
+}
+
+CameraFrame camera_frame(const Camera& camera) {
+  CameraFrame f;
+  f.forward = normalized(camera.target - camera.position);
+  if (f.forward == Vec3d{}) fail(ErrorKind::recipe, "a camera's target must not be its position");
+  for (const Vec3d& up : {camera.up, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}) {
+    const Vec3d right = cross(f.forward, normalized(up));
+    if (length(right) < 1e-6) continue;
+    f.right = normalized(right);
+    f.up = cross(f.right, f.forward);
+    break;
+  }
+  return f;
+}
+
+kernels::ViewData view_data(const Camera& camera, const EngineSettings& engine) {
+  const CameraFrame f = camera_frame(camera);
+  const double longer = std::max(engine.width, engine.height);
+  const double half = tan_half(camera.fov_deg);
+  kernels::ViewData v{};
+  store(v.position, camera.position);
+  store(v.right, f.right * (half * engine.width / longer));
+  store(v.up, f.up * (half * engine.height / longer));
+  store(v.forward, f.forward);
+  store(v.lens_right, f.right * camera.lens_radius_m);
+  store(v.lens_up, f.up * camera.lens_radius_m);
+  v.focus_distance = static_cast<float>(camera.focus_distance_m);
+  v.width = static_cast<std::uint32_t>(engine.width);
+  v.height = static_cast<std::uint32_t>(engine.height);
+  v.tiles_x = (v.width + 7) / 8;
+  v.sample_end = static_cast<std::uint32_t>(engine.spp);
+  v.seed_low = static_cast<std::uint32_t>(engine.seed);
+  v.seed_high = static_cast<std::uint32_t>(engine.seed >> 32);
+  v.depth_total = static_cast<std::uint32_t>(engine.depth_total);
+  v.depth_diffuse = static_cast<std::uint32_t>(engine.depth_diffuse);
+  v.depth_glossy = static_cast<std::uint32_t>(engine.depth_glossy);
+  v.depth_specular = static_cast<std::uint32_t>(engine.depth_specular);
+  v.roulette_depth = static_cast<std::uint32_t>(engine.roulette_depth);
+  v.roulette_cap = engine.roulette_cap;
+  return v;
+}
+
+std::string canonical_camera(const Camera& camera) {
+  CanonicalText text;
+  const auto add = [&](const char* name, Vec3d v) {
+    text.add(name, std::span<const double>(std::array{v.x, v.y, v.z}));
+  };
+  add("position", camera.position);
+  add("target", camera.target);
+  add("up", camera.up);
+  text.add("fov_deg", camera.fov_deg);
+  text.add("lens_radius_m", camera.lens_radius_m);
+  // A pinhole has no focus.
+  if (camera.lens_radius_m > 0) text.add("focus_distance_m", camera.focus_distance_m);
+  return text.text();
+}
+
+std::string canonical_engine(const Scene& scene, const Camera& camera,
+                             const EngineSettings& engine) {
+  CanonicalText text;
+  text.add("width", engine.width);
+  text.add("height", engine.height);
+  text.add("spp", engine.spp);
+  text.add("depth_total", engine.depth_total);
+  text.add("depth_diffuse", engine.depth_diffuse);
+  text.add("depth_glossy", engine.depth_glossy);
+  text.add("depth_specular", engine.depth_specular);
+  text.add("roulette_depth", engine.roulette_depth);
+  text.add("roulette_cap", engine.roulette_cap);
+  text.add("filter_width", engine.filter_width);
+  text.add("seed", engine.seed);
+  text.add("math", engine.math == MathMode::strict ? "strict" : "fast");
+  text.add("host_render_version", k_host_render_version);
+  text.add("program", strip_comments(path_program_text(features_of(scene, camera))));
+  return text.text();
+}
+
+}  // namespace ds

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tracer/kernels/layout.h"
+#include "tracer/render/render.h"
+
+namespace ds {
+
+/// Axes of the camera in world space: unit, orthogonal.
+struct CameraFrame {
+  Vec3d right, up, forward;
+};
+/// Where the view runs along `camera.up`, +Y stands in for it (and +Z where it runs along that
+/// too). Throws Error(recipe) for a target at the position.
+CameraFrame camera_frame(const Camera& camera);
+
+/// The constants the kernels take. fov_deg spans the longer side. Samples from 0 to engine.spp.
+kernels::ViewData view_data(const Camera& camera, const EngineSettings& engine);
+
+/// tan of half the angle, degrees in (0, 180), from + - * / and sqrt alone: the same bits on every
+/// machine.
+double tan_half(double angle_deg);
+
+}  // namespace ds

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/base/error.h"
+#include "tracer/scene/mesh_polygons.h"
+#include "tracer/scene/mesh_topology.h"
+#include "tracer/scene/mesh_triangulate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace ds {
+namespace {
+
+/// So that three corners of every triangle can be numbered in 32 bits.
+constexpr std::uint64_t k_most_triangles = std::uint64_t{1} << 29U;
+constexpr std::uint64_t k_most_vertices = std::uint64_t{1} << 30U;
+
+bool is_finite(Vec3 v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+bool is_finite(Vec2 v) {
+  return std::isfinite(v.x) && std::isfinite(v.y);
+}
+bool is_usable(Vec3 p) {
+  const auto near = [](float x) { return std::fabs(double{x}) <= k_farthest_coordinate; };
+  return near(p.x) && near(p.y) && near(p.z);  // false for NaN
+}
+
+void count_faces(const Polygons& polygons, MeshReport& report) {
+  report.vertices = polygons.positions.size();
+  report.faces = polygons.face_ends.size();
+  for (std::size_t i = 0; i < polygons.face_ends.size(); ++i) {
+    const std::size_t corners = polygons.face(i).size();
+    if (corners > 3) ++report.n_gons;
+    if (corners < 3)
+      ++report.short_faces;
+    else
+      report.triangles += corners - 2;
+  }
+}
+
+/// The triangles of all faces whose corners exist and are usable.
+std::vector<Triangle> triangulate_usable(const Polygons& polygons, MeshReport& report) {
+  std::vector<char> usable(polygons.positions.size());
+  for (std::size_t v = 0; v < usable.size(); ++v) {
+    usable[v] = is_usable(polygons.positions[v]) ? 1 : 0;
+    if (!usable[v]) ++report.non_finite;
+  }
+  std::vector<Triangle> triangles;
+  triangles.reserve(report.triangles);
+  Triangulator triangulator;
+  for (std::size_t i = 0; i < polygons.face_ends.size(); ++i) {
+    const auto face = polygons.face(i);
+    if (face.size() < 3) continue;
+    if (std::any_of(face.begin(), face.end(), [&](auto v) { return v >= usable.size(); }))
+      ++report.out_of_range;
+    else if (std::all_of(face.begin(), face.end(), [&](auto v) { return usable[v] != 0; }))
+      triangulator.triangulate(polygons.positions, face, triangles);
+  }
+  return triangles;
+}
+
+/// No area within the rounding of double arithmetic on the file's floats: corners that coincide or
+/// lie exactly on one line. A sliver that floats can tell from a line is kept; without it a mesh
+/// would have a crack.
+bool has_no_area(Vec3d a, Vec3d b, Vec3d c) {
+  constexpr double k_relative = 0x1p-48;  // a few roundings of 2^-53
+  const Vec3d ab = b - a, ac = c - a, bc = c - b;
+  const double longest = std::max({dot(ab, ab), dot(ac, ac), dot(bc, bc)});
+  return !(length(cross(ab, ac)) > k_relative * longest);
+}
+
+void remove_zero_area(std::vector<Triangle>& triangles, const std::vector<Vec3>& positions,
+                      MeshReport& report) {
+  report.zero_area = std::erase_if(triangles, [&](const Triangle& t) {
+    return has_no_area(to_double(positions[t[0]]), to_double(positions[t[1]]),
+                       to_double(positions[t[2]]));
+  });
+}
+
+void remove_duplicates(std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& welded,
+                       MeshReport& report) {
+  std::vector<Triangle> keys;
+  keys.reserve(triangles.size());
+  for (const Triangle& t : triangles) {
+    Triangle key{welded[t[0]], welded[t[1]], welded[t[2]]};
+    std::sort(key.begin(), key.end());
+    keys.push_back(key);
+  }
+  const std::vector<std::uint32_t> first = first_equal<3>(keys);
+  std::size_t kept = 0;
+  for (std::uint32_t i = 0; i < triangles.size(); ++i)
+    if (first[i] == i) triangles[kept++] = triangles[i];
+  report.duplicate_faces = triangles.size() - kept;
+  triangles.resize(kept);
+}
+
+/// Normals to unit length, and zero for what is not finite.
+void mend_attributes(Mesh& mesh, MeshReport& report) {
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    bool bad = false;
+    if (!mesh.normals.empty()) {
+      bad = !is_finite(mesh.normals[v]);
+      const Vec3d unit = bad ? Vec3d{} : normalized(to_double(mesh.normals[v]));
+      mesh.normals[v] = {to_mesh_float(unit.x), to_mesh_float(unit.y), to_mesh_float(unit.z)};
+    }
+    if (!mesh.uvs.empty() && !is_finite(mesh.uvs[v])) {
+      bad = true;
+      mesh.uvs[v] = {};
+    }
+    if (bad) ++report.bad_attributes;
+  }
+}
+
+/// Moves what triangles use to the front, in the file's order.
+void drop_unreferenced(Mesh& mesh, MeshReport& report) {
+  std::vector<char> used(mesh.positions.size(), 0);
+  for (const Triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t)
+      used[v] = 1;
+  std::vector<std::uint32_t> renumbered(used.size());
+  std::uint32_t kept = 0;
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    renumbered[v] = kept;
+    if (!used[v]) continue;
+    mesh.positions[kept] = mesh.positions[v];
+    if (!mesh.normals.empty()) mesh.normals[kept] = mesh.normals[v];
+    if (!mesh.uvs.empty()) mesh.uvs[kept] = mesh.uvs[v];
+    ++kept;
+  }
+  report.unreferenced = used.size() - kept;
+  mesh.positions.resize(kept);
+  if (!mesh.normals.empty()) mesh.normals.resize(kept);
+  if (!mesh.uvs.empty()) mesh.uvs.resize(kept);
+  for (Triangle& t : mesh.triangles)
+    for (std::uint32_t& v : t)
+      v = renumbered[v];
+}
+
+}  // namespace
+
+Model mend(Polygons polygons, const std::string& name) {
+  Model model;
+  MeshReport& report = model.report;
+  count_faces(polygons, report);
+  if (report.vertices > k_most_vertices || report.triangles > k_most_triangles)
+    fail(ErrorKind::asset, "{}: at most {} vertices and {} triangles can be used, got {} and {}",
+         name, k_most_vertices, k_most_triangles, report.vertices, report.triangles);
+
+  Mesh& mesh = model.mesh;
+  mesh.triangles = triangulate_usable(polygons, report);
+  mesh.positions = std::move(polygons.positions);
+  mesh.normals = std::move(polygons.normals);
+  mesh.uvs = std::move(polygons.uvs);
+  remove_zero_area(mesh.triangles, mesh.positions, report);
+  const std::vector<std::uint32_t> welded = weld(mesh.positions);
+  remove_duplicates(mesh.triangles, welded, report);
+  if (mesh.triangles.empty())
+    fail(
+        ErrorKind::asset,
+        "{}: no triangle is left of {} faces: {} short, {} with an index out of range, {} vertices "
+        "not finite, {} triangles without area",
+        name, report.faces, report.short_faces, report.out_of_range, report.non_finite,
+        report.zero_area);
+  report.flipped = count_flipped(mesh.triangles, welded);
+  drop_unreferenced(mesh, report);
+  mend_attributes(mesh, report);
+  report.triangles_kept = mesh.triangles.size();
+  report.has_normals = !mesh.normals.empty();
+  report.has_uvs = !mesh.uvs.empty();
+  return model;
+}
+
+float to_mesh_float(double value) {
+  // Out of range a cast would be undefined.
+  if (std::fabs(value) > double{std::numeric_limits<float>::max()})
+    return std::copysign(std::numeric_limits<float>::infinity(), value < 0 ? -1.0F : 1.0F);
+  return static_cast<float>(value) + 0.0F;
+}
+
+std::size_t believable(std::uint64_t promised, std::size_t bytes_left, std::size_t item_bytes) {
+  return static_cast<std::size_t>(std::min<std::uint64_t>(promised, bytes_left / item_bytes));
+}
+
+}  // namespace ds

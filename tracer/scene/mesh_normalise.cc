@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/base/error.h"
+#include "tracer/scene/mesh.h"
+#include "tracer/scene/mesh_normals.h"
+#include "tracer/scene/mesh_topology.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace ds {
+namespace {
+
+struct Box {
+  Vec3d least, most;
+};
+
+Vec3d turned(Vec3d v, UpAxis up) {
+  return up == UpAxis::y ? Vec3d{v.x, -v.z, v.y} : v;
+}
+
+/// -0 becomes 0, so that the hash of a mesh does not depend on how a zero came about.
+Vec3 rounded(Vec3d v) {
+  return to_float(v + Vec3d{0, 0, 0});
+}
+
+std::vector<Vec3d> turned_positions(const Mesh& mesh, UpAxis up) {
+  std::vector<Vec3d> positions;
+  positions.reserve(mesh.positions.size());
+  for (const Vec3 p : mesh.positions)
+    positions.push_back(turned(to_double(p), up));
+  return positions;
+}
+
+Box bounds(const std::vector<Vec3d>& positions) {
+  Box box{positions[0], positions[0]};
+  for (const Vec3d p : positions) {
+    box.least = {std::min(box.least.x, p.x), std::min(box.least.y, p.y),
+                 std::min(box.least.z, p.z)};
+    box.most = {std::max(box.most.x, p.x), std::max(box.most.y, p.y), std::max(box.most.z, p.z)};
+  }
+  return box;
+}
+
+/// Area-weighted centroid of the surface, summed about `origin` to keep the digits of a far mesh.
+Vec3d surface_centroid(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
+                       Vec3d origin) {
+  Vec3d sum;
+  double area = 0;
+  for (const Triangle& t : triangles) {
+    const Vec3d a = positions[t[0]] - origin, b = positions[t[1]] - origin,
+                c = positions[t[2]] - origin;
+    const double weight = length(cross(b - a, c - a));
+    sum = sum + (a + b + c) * (weight / 3);
+    area += weight;
+  }
+  return area > 0 ? origin + sum * (1 / area) : origin;
+}
+
+/// Which point becomes the origin, before scaling.
+Vec3d centre_of(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
+                const Box& box, const NormaliseOptions& options) {
+  const Vec3d middle = (box.least + box.most) * 0.5;
+  Vec3d centre;
+  if (options.centre == Centring::mass) centre = surface_centroid(positions, triangles, middle);
+  if (options.centre == Centring::box) centre = middle;
+  centre.z = options.place_on_ground ? box.least.z : 0;
+  return centre;
+}
+
+std::vector<Vec3> placed_positions(const std::vector<Vec3d>& positions,
+                                   const std::vector<Triangle>& triangles,
+                                   const NormaliseOptions& options) {
+  const Box box = bounds(positions);
+  const Vec3d side = box.most - box.least;
+  const double longest = std::max({side.x, side.y, side.z});
+  DS_ASSERT(longest > 0);
+  const double scale = options.size_m > 0 ? options.size_m / longest : 1;
+  const Vec3d centre = centre_of(positions, triangles, box, options);
+  const Vec3d ground{0, 0, options.place_on_ground ? options.ground_z_m : 0};
+  std::vector<Vec3> placed;
+  placed.reserve(positions.size());
+  for (const Vec3d p : positions)
+    placed.push_back(rounded((p - centre) * scale + ground));
+  return placed;
+}
+
+/// The mesh with one normal a corner. Corners that agree in place, normal and uv share a vertex;
+/// vertices are in the order in which triangles first use them.
+Mesh with_corner_normals(const Mesh& source, const std::vector<Vec3>& placed,
+                         const std::vector<std::uint32_t>& welded,
+                         const std::vector<Vec3d>& corner_normals) {
+  const bool has_uvs = !source.uvs.empty();
+  const std::size_t corners = 3 * source.triangles.size();
+  const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
+  std::vector<std::array<std::uint32_t, 6>> keys;
+  keys.reserve(corners);
+  for (std::size_t c = 0; c < corners; ++c) {
+    const std::uint32_t v = source.triangles[c / 3][c % 3];
+    const Vec3 n = rounded(corner_normals[c]);
+    const Vec2 uv = has_uvs ? source.uvs[v] : Vec2{};
+    keys.push_back({welded[v], bits(n.x), bits(n.y), bits(n.z), bits(uv.x), bits(uv.y)});
+  }
+  const std::vector<std::uint32_t> first = first_equal<6>(keys);
+
+  Mesh mesh;
+  mesh.triangles.resize(source.triangles.size());
+  std::vector<std::uint32_t> vertex_of(corners);
+  for (std::size_t c = 0; c < corners; ++c) {
+    if (first[c] == c) {
+      vertex_of[c] = static_cast<std::uint32_t>(mesh.positions.size());
+      const std::uint32_t v = source.triangles[c / 3][c % 3];
+      mesh.positions.push_back(placed[v]);
+      mesh.normals.push_back(rounded(corner_normals[c]));
+      if (has_uvs) mesh.uvs.push_back(source.uvs[v]);
+    }
+    mesh.triangles[c / 3][c % 3] = vertex_of[first[c]];
+  }
+  return mesh;
+}
+
+Mesh with_stored_normals(const Mesh& source, std::vector<Vec3> placed, UpAxis up) {
+  if (source.normals.empty())
+    fail(ErrorKind::asset, "normals = \"keep\" wants a model with stored normals, found none");
+  Mesh mesh;
+  mesh.positions = std::move(placed);
+  mesh.normals.reserve(source.normals.size());
+  for (const Vec3 n : source.normals)
+    mesh.normals.push_back(rounded(turned(to_double(n), up)));
+  mesh.uvs = source.uvs;
+  mesh.triangles = source.triangles;
+  return mesh;
+}
+
+std::vector<Vec3d> flat_corner_normals(const std::vector<Vec3d>& positions,
+                                       const std::vector<Triangle>& triangles) {
+  std::vector<Vec3d> corners;
+  corners.reserve(3 * triangles.size());
+  for (const Vec3d normal : face_normals(positions, triangles))
+    corners.insert(corners.end(), 3, normal);
+  return corners;
+}
+
+}  // namespace
+
+Mesh normalise(const Mesh& mesh, const NormaliseOptions& options) {
+  DS_ASSERT(!mesh.triangles.empty());
+  DS_ASSERT(std::isfinite(options.size_m) && options.size_m >= 0);
+  DS_ASSERT(std::isfinite(options.ground_z_m));
+  DS_ASSERT(options.crease_deg >= 0 && options.crease_deg <= 180);
+  const std::vector<Vec3d> positions = turned_positions(mesh, options.up);
+  std::vector<Vec3> placed = placed_positions(positions, mesh.triangles, options);
+  if (options.normals == Normals::keep)
+    return with_stored_normals(mesh, std::move(placed), options.up);
+  // Normals come from the file's coordinates, which rounding has not touched yet.
+  const std::vector<std::uint32_t> welded = weld(mesh.positions);
+  return with_corner_normals(
+      mesh, placed, welded,
+      options.normals == Normals::flat
+          ? flat_corner_normals(positions, mesh.triangles)
+          : smooth_corner_normals(positions, mesh.triangles, welded, options.crease_deg));
+}
+
+}  // namespace ds

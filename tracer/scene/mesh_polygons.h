@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tracer/base/vec.h"
+#include "tracer/scene/mesh.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ds {
+
+/// A model as a reader finds it: polygons of any size, nothing checked or mended. Indices that are
+/// not in [0, 2^32 - 1) are 2^32 - 1; any may be at or above the vertex count. `normals` and `uvs`
+/// are empty or as long as `positions`. No -0.
+struct Polygons {
+  std::vector<Vec3> positions;
+  std::vector<Vec3> normals;
+  std::vector<Vec2> uvs;
+  std::vector<std::uint32_t> corners;  ///< vertex indices of all faces, one face after another
+  std::vector<std::size_t> face_ends;  ///< where in `corners` each face ends
+
+  std::span<const std::uint32_t> face(std::size_t i) const {
+    const std::size_t begin = i == 0 ? 0 : face_ends[i - 1];
+    return std::span(corners).subspan(begin, face_ends[i] - begin);
+  }
+};
+
+/// The readers. `name` stands for the path in messages. Throw Error(asset).
+Polygons read_ply(std::string_view bytes, const std::string& name);
+Polygons read_off(std::string_view bytes, const std::string& name);
+
+/// Whether the first bytes are those of the format.
+bool is_ply(std::string_view bytes);
+bool is_off(std::string_view bytes);
+
+/// Triangulates, and removes what MeshReport lists. Throws Error(asset) where no triangle is left.
+Model mend(Polygons polygons, const std::string& name);
+
+/// A double from a file as the float a mesh holds: too large becomes infinite, -0 becomes 0.
+float to_mesh_float(double value);
+
+/// How many items of at least `item_bytes` to reserve room for when a header promises `promised`
+/// and `bytes_left` bytes follow.
+std::size_t believable(std::uint64_t promised, std::size_t bytes_left, std::size_t item_bytes);
+
+}  // namespace ds

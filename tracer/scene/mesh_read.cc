@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/base/error.h"
+#include "tracer/base/files.h"
+#include "tracer/scene/mesh.h"
+#include "tracer/scene/mesh_polygons.h"
+#include "tracer/scene/mesh_text.h"
+
+namespace ds {
+
+Model parse_model(std::string_view bytes, const std::string& name) {
+  if (is_ply(bytes)) return mend(read_ply(bytes, name), name);
+  if (is_off(bytes)) return mend(read_off(bytes, name), name);
+  if (bytes.empty())
+    fail(ErrorKind::asset, "{}: wanted a PLY or OFF file, found an empty one", name);
+  fail(ErrorKind::asset, "{}: wanted a PLY or OFF file, found one that begins \"{}\"", name,
+       printable(bytes.substr(0, 16)));
+}
+
+Model read_model(const std::filesystem::path& file) {
+  return parse_model(read_text_file(file), file.string());
+}
+
+}  // namespace ds

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tracer/base/error.h"
+
+namespace ds {
+
+/// LuxCore SDL property files:
+///
+///     line     = blank | comment | name "=" values
+///     comment  = "#" as the first character of the line that is not white space, to its end
+///     name     = text before the first "=", white space around it dropped
+///     values   = { value }, split at spaces and tabs; none is an error
+///     value    = word | '"' text '"' | "'" text "'" | "{[" base64 "]}"
+///
+/// A line may end in CR LF. Nothing escapes a quote: use the other kind. A later line of the same name
+/// replaces the earlier one's values and keeps its position. A blob is kept as the text between its brackets.
+struct Property {
+  std::string name;
+  std::vector<std::string> values;
+  SourcePlace place;  ///< of the line that counts
+  bool used = false;  ///< a reader has taken it; see `PropertySet::unused`
+};
+
+/// The properties of one file, in the order in which their names first appear.
+class PropertySet {
+ public:
+  /// `file` is only for messages. Findings go to `diagnostics`; the lines they are about are left out.
+  static PropertySet parse(std::string_view text, const std::string& file,
+                           Diagnostics& diagnostics);
+  /// Reads the file. Throws Error(io) where it cannot be read.
+  static PropertySet read(const std::filesystem::path& file, Diagnostics& diagnostics);
+
+  /// Null where there is none. Does not mark it used.
+  const Property* find(std::string_view name) const;
+  /// As `find`, and marks the property used.
+  const Property* use(std::string_view name);
+  /// Marks every property used whose name is `prefix` or starts with `prefix` and a dot.
+  void use_all(std::string_view prefix);
+
+  /// The names that stand between `prefix.` and the next dot, each once, in order of appearance.
+  std::vector<std::string> names_below(std::string_view prefix) const;
+  /// First property whose name starts with `prefix.`: where the thing `prefix` is defined. Null where there is none.
+  const Property* first_below(std::string_view prefix) const;
+  std::vector<const Property*> unused() const;
+
+ private:
+  void set(Property property);
+
+  std::vector<Property> properties_;
+  std::map<std::string, std::size_t, std::less<>> index_;
+};
+
+}  // namespace ds

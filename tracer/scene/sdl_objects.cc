@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "tracer/scene/mesh.h"
+#include "tracer/scene/sdl.h"
+#include "tracer/scene/sdl_math.h"
+#include "tracer/scene/sdl_reader.h"
+
+namespace ds {
+namespace {
+
+std::optional<Mesh> read_ply(const SdlNode& node) {
+  const std::optional<std::filesystem::path> file = node.file("ply");
+  if (!file) return std::nullopt;
+  try {
+    return read_model(*file).mesh;
+  } catch (const Error& error) {
+    node.error("ply", "{}", error.what());
+    return std::nullopt;
+  }
+}
+
+std::vector<Vec3> read_vectors(const SdlNode& node, std::string_view property) {
+  const std::vector<double> v = node.list(property, 3);
+  std::vector<Vec3> result;
+  for (std::size_t i = 0; i + 2 < v.size(); i += 3)
+    result.push_back(to_float(Vec3d{v[i], v[i + 1], v[i + 2]}));
+  return result;
+}
+
+void check_count(const SdlNode& node, std::string_view property, std::size_t found,
+                 std::size_t vertices) {
+  if (found != 0 && found != vertices)
+    node.error(property, "wanted one for each of the {} vertices, found {}", vertices, found);
+}
+
+/// vertices, faces, normals and uvs as numbers in the file.
+std::optional<Mesh> read_inlined(const SdlNode& node) {
+  Mesh mesh;
+  mesh.positions = read_vectors(node, "vertices");
+  mesh.normals = read_vectors(node, "normals");
+  const std::vector<double> uvs = node.list("uvs", 2);
+  for (std::size_t i = 0; i + 1 < uvs.size(); i += 2)
+    mesh.uvs.push_back({static_cast<float>(uvs[i]), static_cast<float>(uvs[i + 1])});
+  const std::size_t vertices = mesh.positions.size();
+  check_count(node, "normals", mesh.normals.size(), vertices);
+  check_count(node, "uvs", mesh.uvs.size(), vertices);
+  for (Vec3& normal : mesh.normals)
+    normal = normalized(normal);
+
+  const std::vector<double> faces = node.list("faces", 3);
+  for (const double index : faces)
+    if (!(index >= 0 && index < static_cast<double>(vertices) && std::floor(index) == index)) {
+      node.error("faces", "wanted indices below {}, found {}", vertices, index);
+      return std::nullopt;
+    }
+  for (std::size_t i = 0; i + 2 < faces.size(); i += 3)
+    mesh.triangles.push_back({static_cast<std::uint32_t>(faces[i]),
+                              static_cast<std::uint32_t>(faces[i + 1]),
+                              static_cast<std::uint32_t>(faces[i + 2])});
+  if (!mesh.triangles.empty()) return mesh;
+  node.error("faces", "wanted at least one triangle, found none");
+  return std::nullopt;
+}
+
+/// Points by `m`, normals by its inverse transpose. A mirroring matrix turns the winding round, so that the outside
+/// stays the outside.
+void transform(Mesh& mesh, const Mat4& m) {
+  if (m == Mat4{}) return;
+  for (Vec3& position : mesh.positions)
+    position = to_float(m.point(to_double(position)));
+  const Mat4 inverse = portable::inverse(m);
+  for (Vec3& normal : mesh.normals)
+    normal = to_float(portable::transform_normal(inverse, to_double(normal)));
+  if (portable::determinant(m) < 0)
+    for (auto& triangle : mesh.triangles)
+      std::swap(triangle[1], triangle[2]);
+}
+
+std::optional<Mesh> shape_of(const SdlNode& node) {
+  const std::optional<std::string> name = node.text("shape");
+  if (!name) return std::nullopt;
+  const auto found = node.reader().shapes.find(*name);
+  if (found != node.reader().shapes.end()) return found->second;
+  node.error("shape", "shape \"{}\" is not defined, or has an error", *name);
+  return std::nullopt;
+}
+
+std::optional<Mesh> read_object_mesh(const SdlNode& node) {
+  const int sources = int{node.has("ply")} + int{node.has("shape")} + int{node.has("vertices")};
+  if (sources != 1) {
+    node.error("", "wanted one of ply, shape and vertices, found {}", sources);
+    return std::nullopt;
+  }
+  if (node.has("ply")) return read_ply(node);
+  return node.has("shape") ? shape_of(node) : read_inlined(node);
+}
+
+double area_of(const Mesh& mesh) {
+  double area = 0;
+  for (const auto& triangle : mesh.triangles) {
+    const Vec3d a = to_double(mesh.positions[triangle[0]]);
+    const Vec3d b = to_double(mesh.positions[triangle[1]]);
+    const Vec3d c = to_double(mesh.positions[triangle[2]]);
+    area += 0.5 * length(cross(b - a, c - a));
+  }
+  return area;
+}
+
+/// Emission by power depends on the area, so each object gets a material of its own.
+void apply_power(const SdlNode& node, Object& object) {
+  SdlReader& reader = node.reader();
+  const auto power = reader.power_emissions.find(object.material);
+  if (power == reader.power_emissions.end()) return;
+  const double area = area_of(object.mesh);
+  if (!(area > 0)) {
+    node.error("", "wanted an area above 0 for a material that emits by power");
+    return;
+  }
+  Material material = reader.scene.materials[static_cast<std::size_t>(object.material)];
+  material.name += "@" + object.name;
+  const double factor = power->second.radiance_times_area / area;
+  material.emission =
+      scaled(reader, material.name + ".emission", material.emission, Vec3d{factor, factor, factor});
+  object.material = static_cast<int>(reader.scene.materials.size());
+  reader.scene.materials.push_back(std::move(material));
+}
+
+int material_of(const SdlNode& node) {
+  const std::optional<std::string> name = node.text("material");
+  if (!name) {
+    if (!node.has("material")) node.error("", "material is missing");
+    return -1;
+  }
+  const auto found = node.reader().materials.find(*name);
+  if (found != node.reader().materials.end()) return found->second;
+  node.error("material", "material \"{}\" is not defined, or has an error", *name);
+  return -1;
+}
+
+void read_object(const SdlNode& node) {
+  Object object;
+  object.name = node.name();
+  object.material = material_of(node);
+  object.camera_invisible = node.flag("camerainvisible", false);
+  object.id = node.id("id").value_or(0);
+  if (object.id == k_model_object_id)
+    node.error("id", "{} is the id of the dataset's model, take another", object.id);
+  std::optional<Mesh> mesh = read_object_mesh(node);
+  const Mat4 transformation = node.matrix("transformation");
+  if (!mesh || object.material < 0) return;
+  transform(*mesh, transformation);
+  object.mesh = std::move(*mesh);
+  apply_power(node, object);
+  node.reader().scene.objects.push_back(std::move(object));
+}
+
+void read_shape(const SdlNode& node) {
+  const std::string type = node.type("mesh");
+  if (type != "mesh" && type != "inlinedmesh") return node.refuse_type(type);
+  if (type == "mesh" && !node.has("ply")) node.error("", "ply is missing");
+  std::optional<Mesh> mesh = type == "mesh" ? read_ply(node) : read_inlined(node);
+  if (type == "mesh" && mesh) transform(*mesh, node.matrix("transformation"));
+  if (mesh) node.reader().shapes.emplace(node.name(), std::move(*mesh));
+}
+
+}  // namespace
+
+void read_shapes(SdlReader& reader) {
+  for (const std::string& name : reader.properties.names_below("scene.shapes"))
+    read_shape(SdlNode(reader, SdlKind::shape, name));
+}
+
+void read_objects(SdlReader& reader) {
+  for (const std::string& name : reader.properties.names_below("scene.objects"))
+    read_object(SdlNode(reader, SdlKind::object, name));
+}
+
+}  // namespace ds

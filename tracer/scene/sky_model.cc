@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/scene/sky_model.h"
+
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+#include "tracer/base/hash.h"
+#include "tracer/scene/sdl_math.h"
+#include "tracer/scene/sky_coefficients.h"
+#include "tracer/scene/sun_model.h"
+
+namespace ds {
+namespace {
+
+constexpr double k_horizon = 0.01;  // added to the cosine, so that the horizon is finite
+
+/// Sum of coefficients times powers of `s`, sine of the sun's elevation, and `t`, (turbidity - 2.2) / 5.
+double parameter(const std::array<double, 8>& k, double s, double t) {
+  return k[0] + s * (k[1] + s * (k[2] + s * k[3])) + t * (k[4] + s * (k[5] + s * k[6]) + t * k[7]);
+}
+
+double log_zenith(const std::array<double, 12>& k, double s, double t) {
+  return k[0] + s * (k[1] + s * (k[2] + s * (k[3] + s * k[4]))) +
+         t * (k[5] + s * (k[6] + s * (k[7] + s * k[8]))) +
+         t * t * (k[9] + s * (k[10] + s * k[11]));
+}
+
+double clamped(double x, double low, double high) {
+  return x < low ? low : x > high ? high : x;
+}
+
+/// Share of the ground's radiance that a sky of the turbidity sends back from a height over the horizon.
+Vec3d backscatter(double cos_theta, double turbidity) {
+  const double x = 1 - cos_theta;
+  const double x4 = x * x * x * x;
+  return {0.0343 + (0.0416 + 0.01416 * turbidity) * x + (0.2328 + 0.02749 * turbidity) * x4,
+          0.0736 - 0.00132 * turbidity + (0.1194 + 0.01051 * turbidity) * x +
+              (0.3272 + 0.00625 * turbidity) * x4,
+          0.1260 + (0.2122 + 0.00073 * turbidity) * x + (0.1990 + 0.00359 * turbidity) * x4};
+}
+
+Vec3d at_horizon(Vec3d direction) {
+  const Vec3d flat = normalized(Vec3d{direction.x, direction.y, 0});
+  return flat == Vec3d{} ? Vec3d{1, 0, 0} : flat;
+}
+
+}  // namespace
+
+SkyModel::SkyModel(const SkySettings& settings) : settings_(settings) {
+  constexpr double k_least_sine = 0.0349;  // 2 degrees
+  const double s = clamped(settings.sun_direction.z, k_least_sine, 1);
+  const double t = (settings.turbidity - 2.2) / 5;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const SkyCoefficients& k = k_sky_coefficients[i];
+    // Exponentials keep each factor on the side of zero where the sky stays positive.
+    const double zenith_gradation = portable::exp(parameter(k.gradation, s, t));
+    Band& band = bands_[i];
+    band.b = -portable::exp(parameter(k.b, s, t));
+    band.a = (zenith_gradation - 1) * portable::exp(-band.b / (1 + k_horizon));
+    band.c = portable::exp(parameter(k.c, s, t));
+    band.d = -portable::exp(parameter(k.d, s, t));
+    band.e = portable::exp(parameter(k.e, s, t));
+    const double indicatrix =
+        1 + band.c * portable::exp(band.d * portable::acos(s)) + band.e * s * s;
+    band.scale = portable::exp(log_zenith(k.log_zenith, s, t)) / (zenith_gradation * indicatrix);
+  }
+  const Vec3d sun = sun_radiance(settings.sun_direction, settings.turbidity) *
+                    (portable::k_pi * k_sun_sin_radius * k_sun_sin_radius * settings.sun_direction.z);
+  from_ground_ = settings.ground_albedo * (sun + irradiance_of_clear_sky()) * (1 / portable::k_pi);
+  const double brightness =
+      settings.ground_autoscale ? portable::luminance(sky({0, 0, 1})) : 1;
+  ground_ = settings.ground_color * brightness;
+}
+
+Vec3d SkyModel::clear(Vec3d direction) const {
+  const double cos_gamma = clamped(dot(direction, settings_.sun_direction), -1, 1);
+  const double gamma = portable::acos(cos_gamma);
+  const auto band_radiance = [&](const Band& b) {
+    const double gradation = 1 + b.a * portable::exp(b.b / (direction.z + k_horizon));
+    const double indicatrix = 1 + b.c * portable::exp(b.d * gamma) + b.e * cos_gamma * cos_gamma;
+    return b.scale * gradation * indicatrix;
+  };
+  return {band_radiance(bands_[0]), band_radiance(bands_[1]), band_radiance(bands_[2])};
+}
+
+Vec3d SkyModel::irradiance_of_clear_sky() const {
+  constexpr int k_rings = 32;
+  constexpr int k_sectors = 64;
+  Vec3d sum;
+  for (int ring = 0; ring < k_rings; ++ring) {
+    // Equal steps of sin^2(theta) are equal shares of a horizontal plane's projected hemisphere.
+    const double sin2 = (ring + 0.5) / k_rings;
+    const double sin_theta = std::sqrt(sin2);
+    for (int sector = 0; sector < k_sectors; ++sector) {
+      const double phi = 2 * portable::k_pi * (sector + 0.5) / k_sectors;
+      sum = sum + clear({sin_theta * portable::cos(phi), sin_theta * portable::sin(phi),
+                         std::sqrt(1 - sin2)});
+    }
+  }
+  return sum * (portable::k_pi / (k_rings * k_sectors));
+}
+
+Vec3d SkyModel::sky(Vec3d direction) const {
+  return clear(direction) + from_ground_ * backscatter(direction.z, settings_.turbidity);
+}
+
+Vec3d SkyModel::radiance(Vec3d direction) const {
+  if (direction.z >= 0) return sky(direction);
+  return settings_.ground_enable ? ground_ : sky(at_horizon(direction));
+}
+
+Image make_sky_image(const SkySettings& settings, int width, int height) {
+  const SkyModel sky(settings);
+  Image image;
+  image.gamma = 1;
+  image.width = width;
+  image.height = height;
+  image.rgb.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
+  for (int row = 0; row < height; ++row) {
+    const double theta = portable::k_pi * (row + 0.5) / height;
+    const double sin_theta = portable::sin(theta);
+    for (int column = 0; column < width; ++column) {
+      const double phi = 2 * portable::k_pi * (0.5 - (column + 0.5) / width);
+      const Vec3 rgb = to_float(sky.radiance(
+          {sin_theta * portable::cos(phi), sin_theta * portable::sin(phi), portable::cos(theta)}));
+      image.rgb.insert(image.rgb.end(), {rgb.x, rgb.y, rgb.z});
+    }
+  }
+  image.content = hash_bytes(std::as_bytes(std::span(image.rgb)));
+  return image;
+}
+
+}  // namespace ds
