@@ -4,7 +4,7 @@
 
 The room is a box with furniture of boxes. Each pixel's ray is followed to what it meets; that is lit by the windows and
 the ceiling lamps (sampled at fixed points, with shadows) and by an even share of light that has gone about the room.
-Latitude-longitude, Z up, the zenith in the top row. Python 3.9 or later, standard library only; takes a minute or two.
+Latitude-longitude, Z up, the zenith in the top row. Python 3.9 or later, standard library only; takes a few minutes.
 """
 import math
 import sys

@@ -18,18 +18,16 @@ def gable(width, eaves, ridge, z0, z1):
 def roof(width, eaves, ridge, z0, z1, out, thick):
     """Two slopes with their eaves `out` beyond the walls, and rows of tiles as low steps."""
     slope = (ridge - eaves) / (width / 2)
-    rows, top, under = 9, [], []
+    rows, top = 9, []
     for k in range(rows):
         for t, lift in ((k / rows, thick + 0.05), ((k + 0.98) / rows, thick)):
             x = (width / 2 + out) * (1 - t)
             top.append((x, ridge - slope * x + lift))
-    peak = [(0.0, ridge + thick + 0.02)]
-    side = top + peak
-    ring = side + [(-x, y) for x, y in reversed(top)]
+    ring = top + [(0.0, ridge + thick + 0.02)] + [(-x, y) for x, y in reversed(top)]
     under = [(-(width / 2 + out), eaves - slope * out), (0.0, ridge), (width / 2 + out, eaves - slope * out)]
     outline = ring + under
-    return Mesh().add(prism(outline, z0 - out, z1 + out)).add(rod((0, ridge + thick + \
-                0.03, z0 - out), (0, ridge + thick + 0.03, z1 + out), 0.11, 12, "flat"))
+    cap = rod((0, ridge + thick + 0.03, z0 - out), (0, ridge + thick + 0.03, z1 + out), 0.11, 12, "flat")
+    return prism(outline, z0 - out, z1 + out).add(cap)
 
 
 def prism(ring, z0, z1):
@@ -40,10 +38,10 @@ def prism(ring, z0, z1):
 def window(width, height, shutters=True):
     """A framed window with cross bars and a sill about the origin, standing out towards +Z."""
     w, h = width / 2, height / 2
-    mesh = block(-w - 0.09, -w, -h - 0.09, h + 0.09, -0.05, 0.07,
-                 0.015).add(block(w, w + 0.09, -h - 0.09, h + 0.09, -0.05, 0.07, 0.015))
-    mesh.add(block(-w, w, h, h + 0.09, -0.05, 0.07, 0.015)
-             ).add(block(-w - 0.16, w + 0.16, -h - 0.14, -h, -0.05, 0.16, 0.02))
+    mesh = block(-w - 0.09, -w, -h - 0.09, h + 0.09, -0.05, 0.07, 0.015)
+    mesh.add(block(w, w + 0.09, -h - 0.09, h + 0.09, -0.05, 0.07, 0.015))
+    mesh.add(block(-w, w, h, h + 0.09, -0.05, 0.07, 0.015))
+    mesh.add(block(-w - 0.16, w + 0.16, -h - 0.14, -h, -0.05, 0.16, 0.02))
     mesh.add(block(-0.025, 0.025, -h, h, -0.05, 0.05)).add(block(-w, w, -0.025, 0.025, -0.05, 0.045))
     if shutters:
         for s in (-1, 1):
@@ -60,46 +58,15 @@ def door(width, height):
     for s in (-1, 1):
         mesh.add(block(s * width / 2 - 0.07, s * width / 2 + 0.07, 0, height + 0.07, -0.05, 0.1, 0.02))
         for y0, y1 in ((0.15, 0.48), (0.54, 0.92)):
-            mesh.add(
-    block(
-        s *
-        width /
-        4 -
-        width *
-        0.17,
-        s *
-        width /
-        4 +
-        width *
-        0.17,
-        height *
-        y0,
-        height *
-        y1,
-        0.0,
-        0.055,
-         0.02))
+            middle, half = s * width / 4, width * 0.17
+            mesh.add(block(middle - half, middle + half, height * y0, height * y1, 0.0, 0.055, 0.02))
     mesh.add(block(-width / 2 - 0.1, width / 2 + 0.1, height, height + 0.14, -0.05, 0.12, 0.02))
     return mesh.add(ellipsoid(0.05, 0.05, 0.05, 12).moved(width * 0.4, height * 0.48, 0.07))
 
 
 def chimney(x, z, low, high):
-    mesh = block(
-    x - 0.35,
-    x + 0.35,
-    low,
-    high,
-    z - 0.3,
-    z + 0.3,
-    0.02).add(
-        block(
-            x - 0.43,
-            x + 0.43,
-            high - 0.25,
-            high,
-            z - 0.38,
-            z + 0.38,
-             0.03))
+    mesh = block(x - 0.35, x + 0.35, low, high, z - 0.3, z + 0.3, 0.02)
+    mesh.add(block(x - 0.43, x + 0.43, high - 0.25, high, z - 0.38, z + 0.38, 0.03))
     pot = revolve([(0, 0), (0.17, 0)] + arc((0.13, 0.36), 0.04, 0, 180, 4) + [(0.09, 0.1), (0, 0.1)], 24)
     return mesh.add(pot.moved(x - 0.14, high, z)).add(pot.moved(x + 0.16, high, z))
 
@@ -107,16 +74,17 @@ def chimney(x, z, low, high):
 def steps(width, count, z):
     mesh = Mesh()
     for k in range(count):
-        mesh.add(block(-width / 2 - 0.12 * (count - k), width / 2 + 0.12 * (count - k),
-                 0, 0.13 * (k + 1), z - 0.1, z + 0.28 * (count - k), 0.02))
+        left = count - k
+        half = width / 2 + 0.12 * left
+        mesh.add(block(-half, half, 0, 0.13 * (k + 1), z - 0.1, z + 0.28 * left, 0.02))
     return mesh
 
 
 def house_cottage():
     """A cottage: gabled roof, shutters, chimney, a porch on two posts."""
     house = gable(6.4, 3.1, 5.9, -4.4, 4.4).turned("y", 90).moved(y=0.25)
-    house.add(roof(6.4, 3.35, 6.15, -4.4, 4.4, 0.42, 0.16).turned("y", 90)
-              ).add(block(-4.55, 4.55, 0, 0.35, -3.35, 3.35, 0.04))
+    house.add(roof(6.4, 3.35, 6.15, -4.4, 4.4, 0.42, 0.16).turned("y", 90))
+    house.add(block(-4.55, 4.55, 0, 0.35, -3.35, 3.35, 0.04))
     for x in (-2.7, 2.7):
         house.add(window(0.95, 1.25).moved(x, 1.95, 3.2))
         house.add(window(0.95, 1.25).turned("y", 180).moved(x, 1.95, -3.2))
@@ -125,38 +93,32 @@ def house_cottage():
         for z in (-1.4, 1.4):
             house.add(window(0.85, 1.2, False).turned("y", 90 * s).moved(s * 4.4, 1.95, z))
         house.add(window(0.8, 0.95, False).turned("y", 90 * s).moved(s * 4.4, 4.3, 0))
-    house.add(door(1.0, 2.05).moved(0, 0.35, 3.2)).add(
-        steps(1.3, 2, 3.9)).add(block(-1.0, 1.0, 0, 0.32, 3.1, 4.3, 0.03))
+    house.add(door(1.0, 2.05).moved(0, 0.35, 3.2)).add(steps(1.3, 2, 3.9))
+    house.add(block(-1.0, 1.0, 0, 0.32, 3.1, 4.3, 0.03))
     porch = gable(2.2, 0.16, 0.95, -1.25, 0).moved(0, 2.62, 4.35)
     house.add(porch).add(roof(2.2, 2.78, 3.57, 3.1, 4.35, 0.14, 0.08))
     for x in (-0.95, 0.95):
-        house.add(cylinder(0.09, 2.4, 0.02, 20).moved(x, 0.3, 4.15)).add(
-            box(0.26, 0.12, 0.26, 0.02).moved(x, 0.38, 4.15))
-        house.add(box(0.26, 0.12, 0.26, 0.02).moved(x, 2.6, 4.15))
+        house.add(cylinder(0.09, 2.4, 0.02, 20).moved(x, 0.3, 4.15))
+        for y in (0.38, 2.6):
+            house.add(box(0.26, 0.12, 0.26, 0.02).moved(x, y, 4.15))
     return house.add(chimney(2.6, -0.9, 4.3, 7.3))
 
 
 def house_tower():
     """A tall house with a round stair tower and a steep roof."""
-    house = gable(5.2, 5.2, 8.9, -3.2, 3.2).add(roof(5.2, 5.2, 8.9, -3.2, 3.2, 0.32, 0.16)
-                  ).add(block(-2.75, 2.75, 0, 0.4, -3.35, 3.35, 0.04))
+    house = gable(5.2, 5.2, 8.9, -3.2, 3.2).add(roof(5.2, 5.2, 8.9, -3.2, 3.2, 0.32, 0.16))
+    house.add(block(-2.75, 2.75, 0, 0.4, -3.35, 3.35, 0.04))
     house.add(block(-2.68, 2.68, 2.75, 2.92, -3.28, 3.28, 0.03))
     for y in (1.6, 4.1):
         for z in (-1.9, 0.0, 1.9):
-            house.add(window(0.8, 1.2, False).turned("y", 90).moved(2.6, y, z)).add(
-                window(0.8, 1.2, False).turned("y", -90).moved(-2.6, y, z))
+            for s in (-1, 1):
+                house.add(window(0.8, 1.2, False).turned("y", 90 * s).moved(2.6 * s, y, z))
         for x in (-1.3, 1.3):
             house.add(window(0.8, 1.2, False).turned("y", 180).moved(x, y, -3.2))
     for x, y in ((-1.35, 1.6), (-1.35, 4.1), (0.3, 4.1)):
         house.add(window(0.8, 1.2, False).moved(x, y, 3.2))
-    house.add(
-    window(
-        0.75, 1.0, False).moved(
-            0, 6.5, 3.2)).add(
-                window(
-                    0.75, 1.0, False).turned(
-                        "y", 180).moved(
-                            0, 6.5, -3.2))
+    for turn, z in ((0, 3.2), (180, -3.2)):
+        house.add(window(0.75, 1.0, False).turned("y", turn).moved(0, 6.5, z))
     house.add(door(1.0, 2.1).moved(0.3, 0.3, 3.2)).add(steps(1.2, 2, 3.35).moved(0.3))
     tower = revolve([(0, 0), (1.62, 0), (1.62, 0.4), (1.5, 0.46), (1.5, 2.72), (1.58, 2.76),
                     (1.58, 2.92), (1.5, 2.96), (1.5, 6.3), (1.62, 6.4), (1.72, 6.7), (0, 6.7)], 56)

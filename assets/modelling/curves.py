@@ -64,7 +64,7 @@ def _smooth(points, steps, closed):
 
 
 def _catmull_rom(p, t):
-    """Barry and Goldman's pyramid with knots at the square roots of the distances; t in [0, 1] runs from p[1] to p[2]."""
+    """Barry and Goldman's pyramid with knots at the square roots of the distances; t from 0 to 1 is p[1] to p[2]."""
     k = [0.0]
     for a, b in zip(p, p[1:]):
         k.append(k[-1] + math.sqrt(math.dist(a, b)))
@@ -113,8 +113,8 @@ def rounded_polygon(corners, radius, steps):
         start = math.atan2(first[1] - centre[1], first[0] - centre[0])
         turn = math.atan2(last[1] - centre[1], last[0] - centre[0]) - start
         turn = (turn + math.pi) % (2 * math.pi) - math.pi
-        ring += [(centre[0] + r * math.cos(start + turn * k / steps), centre[1] + \
-                  r * math.sin(start + turn * k / steps)) for k in range(steps + 1)]
+        angles = (start + turn * k / steps for k in range(steps + 1))
+        ring += [(centre[0] + r * math.cos(a), centre[1] + r * math.sin(a)) for a in angles]
     return ring
 
 

@@ -17,8 +17,8 @@ def fin(root, edge, thick, thin, rays=0, n=28, m=8):
     for k in range(n + 1):
         # The first and the last ray are thin, but not so thin that faces lose their area.
         slim = 0.25 + 0.75 * math.sin(math.pi * k / n) ** 0.5
-        half = [slim * (thick + (thin - thick) * i / m) * (1 + 0.35 * \
-                        (math.cos(2 * math.pi * rays * k / n) if rays else 0)) for i in range(m + 1)]
+        swell = 1 + 0.35 * (math.cos(2 * math.pi * rays * k / n) if rays else 0)
+        half = [slim * (thick + (thin - thick) * i / m) * swell for i in range(m + 1)]
         line = [mix(root[k], edge[k], i / m) for i in range(m + 1)]
         rings.append([add(p, mul(side, h)) for p, h in zip(line, half)] +
                      [add(p, mul(side, -h)) for p, h in reversed(list(zip(line, half)))])
@@ -42,29 +42,8 @@ def fish_body(stations, n=40):
 
 
 def eye(x, y, z, r):
-    return pair(
-    ellipsoid(
-        r *
-        0.55,
-        r,
-        r,
-        20).moved(
-            x,
-            y,
-            z).add(
-                ellipsoid(
-                    r *
-                    0.4,
-                    r *
-                    0.5,
-                    r *
-                    0.5,
-                    16).moved(
-                        x +
-                        r *
-                        0.35,
-                        y,
-                         z)))
+    ball = ellipsoid(r * 0.55, r, r, 20).moved(x, y, z)
+    return pair(ball.add(ellipsoid(r * 0.4, r * 0.5, r * 0.5, 16).moved(x + r * 0.35, y, z)))
 
 
 def gill(x, y, z, height):

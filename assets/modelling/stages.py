@@ -11,8 +11,8 @@ GROUND = -0.0574
 
 
 def turned(profile, n, tip=None):
-    """Turns a (radius, z) profile with normals about the Z axis: points, normals and faces of a smooth surface seen from
-    the side its normals (dr, dz) point to. `tip` is the height of a point on the axis before the first ring."""
+    """Turns a (radius, z) profile with normals about the Z axis: points, normals and faces of a smooth surface seen
+    from the side its normals (dr, dz) point to. `tip` is the height of a point on the axis before the first ring."""
     mesh, normals = Mesh(), []
     if tip is not None:
         mesh.points.append((0.0, 0.0, tip))
@@ -111,7 +111,8 @@ def column(height, broken=False):
 def columns():
     """Five columns round the object, nearer to it than the cameras, so that some views see it past one of them."""
     mesh = Mesh()
-    for k, (height, broken) in enumerate(((0.138, False), (0.150, False), (0.110, True), (0.064, True), (0.150, False))):
+    for k, (height, broken) in enumerate(((0.138, False), (0.150, False), (0.110, True), (0.064, True),
+                                          (0.150, False))):
         a = math.radians(8 + 72 * k)
         placed = column(height, broken).turned("y", 40 * k)
         mesh.add(z_up(placed).moved(0.172 * math.cos(a), 0.172 * math.sin(a), GROUND))

@@ -82,27 +82,14 @@ def buttons(places):
 
 def snowman_hat():
     """Three balls and a top hat."""
-    man = snowball(
-    2.0,
-    0.92,
-    1).moved(
-        y=1.7).add(
-            snowball(
-                1.45,
-                0.94,
-                2).moved(
-                    y=4.35)).add(
-                        snowball(
-                            1.05,
-                            0.97,
-                            3).moved(
-                                y=6.45))
+    man = snowball(2.0, 0.92, 1).moved(y=1.7)
+    man.add(snowball(1.45, 0.94, 2).moved(y=4.35)).add(snowball(1.05, 0.97, 3).moved(y=6.45))
     man.add(snow_face(6.5, 1.05, 1.15)).add(buttons([(4.9, 1.36), (4.3, 1.46), (3.7, 1.36)]))
     man.add(stick_arm(1, 0.5)).add(stick_arm(-1, 0.1))
-    hat = [(0, 0)] + arc((1.42, 0.08), 0.08, -90, 90, 6) + [(0.9, 0.17),
-            (0.86, 0.6), (0.87, 1.2)] + arc((0.84, 1.42), 0.08, 0, 90, 4)
-    return man.add(revolve(hat + [(0, 1.5)], 48).add(torus(0.87, 0.08, 48, 10).moved(y=0.3)
-                   ).turned("z", -9).turned("x", -5).moved(0.12, 7.18, -0.08))
+    hat = [(0, 0)] + arc((1.42, 0.08), 0.08, -90, 90, 6) + [(0.9, 0.17), (0.86, 0.6), (0.87, 1.2)]
+    hat = revolve(hat + arc((0.84, 1.42), 0.08, 0, 90, 4) + [(0, 1.5)], 48)
+    hat.add(torus(0.87, 0.08, 48, 10).moved(y=0.3))
+    return man.add(hat.turned("z", -9).turned("x", -5).moved(0.12, 7.18, -0.08))
 
 
 def snowman_scarf():
@@ -111,9 +98,9 @@ def snowman_scarf():
     man.add(snow_face(4.75, 1.4, 0.9)).add(buttons([(2.9, 1.93), (2.1, 2.14)]))
     for side, wave in ((1, 0.9), (-1, -0.5)):
         man.add(stick_arm(side, wave).moved(side * 0.55, -2.2, 0))
-    cap = [(0, 0.2), (1.28, 0.0)] + arc((1.32, 0.26), 0.26, -90, 90, 8) + \
-            spline([(1.22, 0.5), (1.1, 1.0), (0.75, 1.55), (0.25, 1.9)], 4)
-    ribs = revolve(cap + [(0, 1.95)], 72).mapped(lambda x, y, z: _ribbed(x, y, z))
+    cap = [(0, 0.2), (1.28, 0.0)] + arc((1.32, 0.26), 0.26, -90, 90, 8)
+    cap += spline([(1.22, 0.5), (1.1, 1.0), (0.75, 1.55), (0.25, 1.9)], 4)
+    ribs = revolve(cap + [(0, 1.95)], 72).mapped(_ribbed)
     man.add(ribs.add(snowball(0.42, 1, 4).moved(y=2.1)).turned("z", 8).moved(-0.1, 5.35, -0.1))
     wrap = [(1.12 * math.cos(a), 3.72 + 0.06 * math.sin(2 * a), 1.12 * math.sin(a))
              for a in (math.tau * i / 60 for i in range(60))]
@@ -147,7 +134,7 @@ def guitar_neck(length, foot, nut, z, y):
         t = k / 8
         w = foot + (nut - foot) * t
         rings.append([(s, y + length * t, z + u) for s, u in [(w, 0.25), (-w, 0.25)] + [(w * math.cos(a),
-                     0.75 * math.sin(a) + 0.0) for a in (math.pi + math.pi * i / 12 for i in range(13))]])
+                     0.75 * math.sin(a)) for a in (math.pi + math.pi * i / 12 for i in range(13))]])
     neck = loft(rings)
     for i in range(1, 13):
         at = length * (1 - 2 ** (-i / 12)) * 1.75
@@ -155,8 +142,9 @@ def guitar_neck(length, foot, nut, z, y):
             w = nut + (foot - nut) * at / length
             neck.add(rod((-w * 0.98, y + length - at, z + 0.27), (w * 0.98, y + length - at, z + 0.27), 0.06, 8))
     top = y + length
-    head = [(-nut, top - 0.4), (nut, top - 0.4), (nut + 0.05, top + 0.3), (nut + 0.55, top + 1.1), (nut + 0.75, top + 4.4), (0.7,
-             top + 5.0), (0, top + 4.7), (-0.7, top + 5.0), (-nut - 0.75, top + 4.4), (-nut - 0.55, top + 1.1), (-nut - 0.05, top + 0.3)]
+    head = [(-nut, top - 0.4), (nut, top - 0.4), (nut + 0.05, top + 0.3), (nut + 0.55, top + 1.1),
+            (nut + 0.75, top + 4.4), (0.7, top + 5.0), (0, top + 4.7), (-0.7, top + 5.0), (-nut - 0.75, top + 4.4),
+            (-nut - 0.55, top + 1.1), (-nut - 0.05, top + 0.3)]
     neck.add(standing(rounded_polygon(head, 0.22, 3), z - 0.65, 0.8, 0.12, 3))
     for k in range(3):
         for side in (-1, 1):

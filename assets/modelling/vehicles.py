@@ -74,9 +74,10 @@ def fuselage(stations, n=40, power=2.0):
 
 def airliner():
     """A twin-engined airliner."""
-    body = spline([(19.0, -0.55, 0.0, 0.0), (18.85, -0.5, 0.42, 0.42), (18.2, -0.36, 1.0, 1.0), (16.8, -0.14, 1.62, 1.62),
-                   (14.6, 0, 1.96, 1.98), (11, 0, 2.0, 2.05), (0, 0, 2.0, 2.05), (-7, 0.02, 2.0, 2.03), (-12, 0.45, 1.62, 1.6),
-                   (-16, 0.95, 0.95, 0.98), (-18.6, 1.3, 0.4, 0.45), (-19.3, 1.38, 0.15, 0.18)], 4)
+    body = spline([(19.0, -0.55, 0.0, 0.0), (18.85, -0.5, 0.42, 0.42), (18.2, -0.36, 1.0, 1.0),
+                   (16.8, -0.14, 1.62, 1.62), (14.6, 0, 1.96, 1.98), (11, 0, 2.0, 2.05), (0, 0, 2.0, 2.05),
+                   (-7, 0.02, 2.0, 2.03), (-12, 0.45, 1.62, 1.6), (-16, 0.95, 0.95, 0.98), (-18.6, 1.3, 0.4, 0.45),
+                   (-19.3, 1.38, 0.15, 0.18)], 4)
     body[0] = (19.0, -0.55, 0.0, 0.0)
     plane = fuselage(body)
     plane.add(fuselage(spline([(6.5, -1.5, 0.3, 0.2), (4.5, -1.55, 1.7, 0.75),
@@ -90,8 +91,8 @@ def airliner():
     plane.add(wing(tipped(((0, 1.4, -11.2), 6.0), ((0, 8.0, -17.0), 2.1), 0.055, 0.05), upright=True))
     shell = spline([(0.95, 0.0), (1.12, 0.1), (1.2, 0.6), (1.17, 1.9), (0.98, 3.1), (0.86, 3.5)], 4)
     duct = [(0.8, 3.45), (0.82, 2.6), (0.9, 1.2), (0.88, 0.35)]
-    core = revolve([(0, 0.75)] + spline([(0.15, 0.8), (0.3, 1.15), (0.35, 1.3)], 3) + \
-                   [(0.86, 1.35), (0.7, 3.2), (0.52, 3.7), (0.2, 4.2), (0, 4.4)], 32)
+    core = revolve([(0, 0.75)] + spline([(0.15, 0.8), (0.3, 1.15), (0.35, 1.3)], 3)
+                   + [(0.86, 1.35), (0.7, 3.2), (0.52, 3.7), (0.2, 4.2), (0, 4.4)], 32)
     engine = revolve(shell + duct, 40, closed=True).add(core).turned("x", -90)
     pylon = wing([((5.9, -1.55, 2.6), 3.9, 0.05), ((5.9, -0.6, 1.4), 4.2, 0.05)], upright=True)
     plane.add(both_sides(engine.moved(5.9, -2.35, 3.9).add(pylon)))
@@ -120,8 +121,8 @@ def biplane():
         for i in range(9):
             t = i / 8
             c, twist = 0.05 + 0.11 * math.sin(math.pi * (0.12 + 0.8 * t)), math.radians(62 - 45 * t)
-            blade.append([(0.1 + 1.05 * t, s * math.cos(twist) - u * math.sin(twist), s * \
-                         math.sin(twist) + u * math.cos(twist)) for s, u in circle(c, 16, 0.22)])
+            cos, sin = math.cos(twist), math.sin(twist)
+            blade.append([(0.1 + 1.05 * t, s * cos - u * sin, s * sin + u * cos) for s, u in circle(c, 16, 0.22)])
         plane.add(loft(blade).moved(z=3.22).turned("z", k + 25))
     rim = torus(0.5, 0.05, 28, 8).scaled(0.72, 1.0, 1.0).moved(0, 0.55, -0.45)
     plane.add(rim).add(ellipsoid(0.2, 0.25, 0.22, 20).moved(0, 0.82, -0.5))
@@ -235,14 +236,15 @@ def car_van():
 
 
 def hull(stations, freeboard, n=10):
-    """An open boat: (z, half beam, keel y, gunwale y) from stern to bow; `freeboard` is from the deck to the gunwale."""
+    """An open boat: (z, half beam, keel y, gunwale y) from stern to bow; `freeboard`: deck to gunwale."""
     rings = []
     for z, beam, keel, rail in stations:
         deep = rail - keel
         out = []
         for i in range(2 * n + 1):
             a = math.pi * i / (2 * n)
-            out.append((-beam * math.copysign(abs(math.cos(a)) ** 0.62, math.cos(a)), rail - deep * math.sin(a) ** 0.85, z))
+            across = math.copysign(abs(math.cos(a)) ** 0.62, math.cos(a))
+            out.append((-beam * across, rail - deep * math.sin(a) ** 0.85, z))
         inner = max(beam - 0.09, beam * 0.5)
         deck = min(freeboard, deep * 0.5)
         back = [(inner, rail, z), (inner, rail - deck, z), (inner * 0.5, rail - deck, z), (0.0, rail - deck, z),
@@ -272,10 +274,12 @@ def sail(corners, belly, n=14):
 def boat_sailing():
     """A sloop under mainsail and jib."""
     lines = spline([(-3.3, 0.75, -0.15, 0.62), (-2.0, 1.05, -0.42, 0.58), (-0.3, 1.2, -0.55, 0.56),
-                   (1.4, 1.0, -0.48, 0.62), (2.8, 0.5, -0.2, 0.74), (3.5, 0.12, 0.25, 0.84), (3.68, 0.03, 0.62, 0.87)], 5)
+                   (1.4, 1.0, -0.48, 0.62), (2.8, 0.5, -0.2, 0.74), (3.5, 0.12, 0.25, 0.84),
+                    (3.68, 0.03, 0.62, 0.87)], 5)
     boat = hull(lines, 0.16)
     house = [[(s, y, 0.35 + u) for s, u in superellipse(w, l, 3.2, 44)]
-             for w, l, y in ((0.68, 1.35, 0.38), (0.66, 1.3, 0.62), (0.6, 1.2, 0.78), (0.5, 1.05, 0.84), (0.2, 0.5, 0.87))]
+             for w, l, y in ((0.68, 1.35, 0.38), (0.66, 1.3, 0.62), (0.6, 1.2, 0.78), (0.5, 1.05, 0.84),
+                             (0.2, 0.5, 0.87))]
     boat.add(loft(house))
     boat.add(rod((0, 0.3, 0.75), (0, 8.6, 0.6), (0.075, 0.045), 16))
     boat.add(rod((0, 1.3, 0.72), (0.45, 1.35, -2.75), (0.06, 0.05), 14))
@@ -284,7 +288,8 @@ def boat_sailing():
     for a, b in (((0, 0.85, 3.58), (0, 7.2, 0.66)), ((0, 0.62, -3.2), (0, 8.5, 0.6)),
                  ((1.1, 0.55, 0.4), (0.05, 6.6, 0.65)), ((-1.1, 0.55, 0.4), (-0.05, 6.6, 0.65))):
         boat.add(rod(a, b, 0.022, 8))
-    keel = wing([((0, -0.35, 1.2), 2.6, 0.08), ((0, -0.82, 0.9), 2.1, 0.09), ((0, -0.9, 0.75), 1.8, 0.05)], upright=True)
+    keel = wing([((0, -0.35, 1.2), 2.6, 0.08), ((0, -0.82, 0.9), 2.1, 0.09),
+                 ((0, -0.9, 0.75), 1.8, 0.05)], upright=True)
     rudder = wing([((0, 0.45, -3.25), 0.35, 0.14), ((0, -0.6, -3.2), 0.42, 0.12),
                   ((0, -0.68, -3.25), 0.3, 0.06)], upright=True)
     return boat.add(keel).add(rudder)
@@ -293,25 +298,28 @@ def boat_sailing():
 def boat_tug():
     """A harbour tug."""
     lines = spline([(-4.2, 1.1, 0.2, 1.15), (-3.9, 1.5, -0.35, 1.12), (-2.2, 1.85, -0.7, 1.05), (0.0, 1.95, -0.8, 1.1),
-                    (2.0, 1.75, -0.75, 1.35), (3.4, 1.1, -0.55, 1.72), (4.1, 0.4, -0.1, 1.98), (4.3, 0.06, 0.5, 2.06)], 5)
+                    (2.0, 1.75, -0.75, 1.35), (3.4, 1.1, -0.55, 1.72), (4.1, 0.4, -0.1, 1.98),
+                    (4.3, 0.06, 0.5, 2.06)], 5)
     boat = hull(lines, 0.4)
     rub = [(beam + 0.02, rail - 0.12, z) for z, beam, keel, rail in lines[2:]]
     boat.add(both_sides(tube(rub, 0.1, 10)))
 
     def storey(w, l, low, high, z):
         return loft([[(s, y, z + u) for s, u in superellipse(w - d, l - d, 4.5, 48)]
-                     for y, d in ((low, 0), (high - 0.06, 0.03), (high - 0.06, -0.12), (high, -0.12), (high + 0.04, -0.02))])
+                     for y, d in ((low, 0), (high - 0.06, 0.03), (high - 0.06, -0.12), (high, -0.12),
+                                  (high + 0.04, -0.02))])
 
     boat.add(storey(1.15, 1.7, 0.55, 1.95, 0.2)).add(storey(0.85, 0.75, 1.9, 3.05, 0.95))
     for a in (-52, -18, 18, 52, 90, -90):
         turn = math.radians(a)
         boat.add(box(0.34, 0.42, 0.06, 0.02).turned("y", a).moved(
             0.79 * math.sin(turn) * 1.03, 2.52, 0.95 + 0.70 * math.cos(turn) * 1.03))
-    boat.add(revolve([(0, 1.8), (0.42, 1.8), (0.4, 3.0), (0.45, 3.0), (0.45, 3.12), (0.39, 3.12), (0.37, 3.45)] + arc(
-        (0.34, 3.45), 0.03, 0, 180, 4) + [(0.3, 3.1), (0, 3.1)], 36).mapped(lambda x, y, z: (x, y, z * 1.15 - 0.75 - 0.06 * y)))
+    funnel = [(0, 1.8), (0.42, 1.8), (0.4, 3.0), (0.45, 3.0), (0.45, 3.12), (0.39, 3.12), (0.37, 3.45)]
+    funnel = revolve(funnel + arc((0.34, 3.45), 0.03, 0, 180, 4) + [(0.3, 3.1), (0, 3.1)], 36)
+    boat.add(funnel.mapped(lambda x, y, z: (x, y, z * 1.15 - 0.75 - 0.06 * y)))
     boat.add(rod((0, 3.0, 0.75), (0, 4.7, 0.6), (0.06, 0.035), 12)).add(
         rod((-0.5, 4.1, 0.65), (0.5, 4.1, 0.65), 0.03, 10))
-    for k, (z, beam, keel, rail) in enumerate(lines[8:28:5]):
+    for z, beam, _, rail in lines[8:28:5]:
         ring = torus(0.24, 0.1, 28, 12).turned("z", 90).moved(beam + 0.12, rail - 0.36, z)
         boat.add(both_sides(ring))
     for x in (-0.35, 0.35):

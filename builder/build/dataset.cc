@@ -4,6 +4,7 @@
 #include "builder/build/store_database.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
+#include "tracer/base/log.h"
 
 #include <random>
 #include <sstream>
@@ -43,11 +44,10 @@ std::optional<Pointer> read_pointer(const fs::path& folder) {
   std::getline(text, header);
   std::getline(text, id);
   std::getline(text, store);
-  if (header != k_pointer_header || !Hash128::from_hex(id) || store.empty())
-    fail(ErrorKind::io,
-         "{}: wanted \"{}\", an id and a folder, found something else; remove it and build the "
-         "recipe",
-         file.string(), k_pointer_header);
+  if (header != k_pointer_header || !Hash128::from_hex(id) || store.empty()) {
+    warn(fmt::format("{}: damaged; the dataset is entered anew", file.string()));
+    return std::nullopt;
+  }
   return Pointer{id, normal(folder / k_state_folder / store)};
 }
 

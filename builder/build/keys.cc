@@ -2,6 +2,7 @@
 #include "builder/build/keys.h"
 
 #include "tracer/base/canonical.h"
+#include "tracer/device/program_text.h"
 #include "tracer/scene/sdl.h"
 
 #include <span>
@@ -83,6 +84,12 @@ std::string output_path(const std::string& image_id, const std::string& kind) {
   return "images/" + image_id + encoding_of(kind).ending;
 }
 
+KeyMaker::KeyMaker(const Recipe& recipe, Inputs& inputs, TextSet& texts)
+    : recipe_(recipe),
+      inputs_(inputs),
+      texts_(texts),
+      geometry_program_(hash_text(strip_comments(geometry_program_text()))) {}
+
 const Scene& KeyMaker::scene_without_model(const ImageSpec& image) {
   const SceneName name{image.material_file, image.environment_folder};
   const auto found = scenes_.find(name);
@@ -107,6 +114,7 @@ Hash128 KeyMaker::geometry_key(const ImageSpec& image, Hash128 model_part) {
   CanonicalText text;
   text.add("version", k_geometry_version);
   text.add("host_version", k_host_render_version);
+  text.add("program", geometry_program_.hex());
   text.add("model", model_part.hex());
   text.add("environment", environment_shape(image.environment_folder));
   add_vector(text, "camera.position", image.camera.position);

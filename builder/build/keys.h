@@ -37,8 +37,7 @@ struct ImageKeys {
 /// to must outlive it.
 class KeyMaker {
  public:
-  KeyMaker(const Recipe& recipe, Inputs& inputs, TextSet& texts)
-      : recipe_(recipe), inputs_(inputs), texts_(texts) {}
+  KeyMaker(const Recipe& recipe, Inputs& inputs, TextSet& texts);
 
   /// Throws where a file of the image cannot be read.
   ImageKeys keys(const ImageSpec& image);
@@ -55,6 +54,7 @@ class KeyMaker {
   const Recipe& recipe_;
   Inputs& inputs_;
   TextSet& texts_;
+  Hash128 geometry_program_;
   std::map<SceneName, Scene> scenes_;
   std::map<std::filesystem::path, Hash128> material_parts_, environment_parts_;
   std::map<std::filesystem::path, std::string> environment_shapes_;

@@ -20,9 +20,8 @@ struct CameraViews {
 CameraViews make_cameras(const Settings& settings);
 
 /// Positions around the origin, in metres.
-/// The 14 views of the thesis: the 20 corners of a dodecahedron are too many, so its upper half
-/// with the axes' corners kept; see the table in the source. `normalise`: all at the distance; else
-/// the table times distance / 1.732.
+/// The 14 views of the thesis, around and above: corners of a dodecahedron's upper half and points
+/// between them. `normalise`: all at the distance; else the table times distance / 1.732.
 std::vector<Vec3d> half_dodecahedron(double distance_m, bool normalise);
 /// `count` views at equal steps of azimuth on a circle, the first at azimuth_deg, counter-clockwise
 /// seen from above.

@@ -158,6 +158,8 @@ Features features_of(const Scene& scene, const Camera& camera) {
   add_materials(scene, f);
   add_lights(scene, f);
   f.lens = camera.lens_radius_m > 0;
+  f.camera_invisible = std::any_of(scene.objects.begin(), scene.objects.end(),
+                                   [](const Object& object) { return object.camera_invisible; });
   f.lobe_choice = picks_lobes(f);
   return f;
 }
@@ -173,7 +175,7 @@ Features all_features() {
   f.lights = k_local_lights;
   f.lights.insert(f.lights.end(), k_escape_lights.begin(), k_escape_lights.end());
   f.escape_lights = k_escape_lights;
-  f.mix = f.lens = f.lobe_choice = true;
+  f.mix = f.lens = f.camera_invisible = f.lobe_choice = true;
   f.texture_stack = k_texture_stack_limit;
   return f;
 }
@@ -201,6 +203,7 @@ std::string path_program_text(const Features& f) {
   if (Features::number(f.lights, "mesh") >= 0) head += "#define DS_MESH_LIGHTS\n";
   if (f.mix) head += fmt::format("#define DS_MIX_NUMBER {}\n", f.materials.size());
   if (f.lens) head += "#define DS_LENS\n";
+  if (f.camera_invisible) head += "#define DS_CAMERA_INVISIBLE\n";
   if (f.lobe_choice) head += "#define DS_LOBE_CHOICE\n";
 
   std::set<std::string, std::less<>> done;

@@ -20,9 +20,10 @@ struct Features {
   std::vector<std::string> escape_lights;  ///< those of `lights` that lie beyond the scene
   bool mix = false;
   bool lens = false;
-  bool lobe_choice = false;  ///< a material that picks one of several lobes, or mix
-  int material_inputs = 1;   ///< most floats any used material's inputs take
-  int texture_stack = 1;     ///< most values any texture program has on its stack at once
+  bool camera_invisible = false;  ///< an object that camera rays pass through
+  bool lobe_choice = false;       ///< a material that picks one of several lobes, or mix
+  int material_inputs = 1;        ///< most floats any used material's inputs take
+  int texture_stack = 1;          ///< most values any texture program has on its stack at once
 
   bool operator==(const Features&) const = default;
   /// Position in the list, or -1.

@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every material, texture and light as C++ functions, one lane wide, in namespace ds::kernels. For the host's tables,
-// for packing, and for tests against closed forms.
+// Every material, texture and light as C++ functions, one lane wide, in namespace ds::kernels. For
+// the host's tables, for packing, and for tests against closed forms.
 #pragma once
 
 #include "tracer/kernels/layout.h"
 
 #if defined(__GNUC__)
-#pragma GCC diagnostic push
-// One signature serves all nodes, so some leave parameters unused; casts are spelled as OpenCL C has them.
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#pragma GCC diagnostic ignored "-Wold-style-cast"
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wpedantic"
+#  pragma GCC diagnostic push
+// One signature serves all nodes, so some leave parameters unused; casts are spelled as OpenCL C
+// has them.
+#  pragma GCC diagnostic ignored "-Wunused-parameter"
+#  pragma GCC diagnostic ignored "-Wold-style-cast"
+#  pragma GCC diagnostic ignored "-Wsign-conversion"
+#  pragma GCC diagnostic ignored "-Wconversion"
+#  pragma GCC diagnostic ignored "-Wshadow"
+#  pragma GCC diagnostic ignored "-Wpedantic"
 #endif
 
+// clang-format off
 namespace ds::kernels {
 #include "tracer/kernels/lights/constant_infinite.h"
 #include "tracer/kernels/lights/infinite.h"
@@ -39,7 +41,8 @@ namespace ds::kernels {
 #include "tracer/kernels/textures/subtract.h"
 #include "tracer/kernels/texture_program.h"
 }  // namespace ds::kernels
+// clang-format on
 
 #if defined(__GNUC__)
-#pragma GCC diagnostic pop
+#  pragma GCC diagnostic pop
 #endif

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every material answers. Directions are unit, in the local frame whose z axis is the shading normal on the side of
-// the viewer; they point away from the surface. A material NAME in materials/NAME.h has
+// What every material answers. Directions are unit, in the local frame whose z axis is the shading
+// normal on the side of the viewer; they point away from the surface. A material NAME in
+// materials/NAME.h has
 //
 //   DS_NAME_INPUTS(INPUT)    its inputs: INPUT(slot, width, default), slot being NAME_input
 //   DS_NAME_NUMBERS(NUMBER)  its fixed numbers: NUMBER(slot, default)
 //   BsdfValue  NAME_evaluate(const real* p, Viewer viewer, real3 wi)
 //   BsdfSample NAME_sample(const real* p, Viewer viewer, real2 u, real2 lobe)
 //
-// `p` holds the inputs' values at the surface point. No material returns NaN or a negative number for any input in range.
+// `p` holds the inputs' values at the surface point. No material returns NaN or a negative number
+// for any input in range.
 #pragma once
 
 #include "tracer/kernels/sampler.h"
@@ -27,12 +29,12 @@ typedef struct {
 
 typedef struct {
   real3 wi;
-  real3 weight;     ///< BSDF |cos| / pdf
-  real pdf;         ///< per steradian; 0 for a specular sample
-  real eta_scale;   ///< radiance scale of a refraction, (n_i / n_t)^2; 1 otherwise
+  real3 weight;    ///< BSDF |cos| / pdf
+  real pdf;        ///< per steradian; 0 for a specular sample
+  real eta_scale;  ///< radiance scale of a refraction, (n_i / n_t)^2; 1 otherwise
   mask valid;
-  mask specular;    ///< a Dirac lobe: no other strategy can find it
-  mask glossy;      ///< counts as glossy, otherwise (and not specular) as diffuse
+  mask specular;  ///< a Dirac lobe: no other strategy can find it
+  mask glossy;    ///< counts as glossy, otherwise (and not specular) as diffuse
 } BsdfSample;
 
 DS_FN BsdfValue no_value(void) {
@@ -55,9 +57,13 @@ DS_FN BsdfSample no_sample(void) {
 }
 
 /// Everything a mask can say yes to.
-DS_FN mask all_lanes(void) { return (real)(0.0f) == (real)(0.0f); }
+DS_FN mask all_lanes(void) {
+  return (real)(0.0f) == (real)(0.0f);
+}
 
-DS_FN real3 input3(const real* p, int slot) { return vec(p[slot], p[slot + 1], p[slot + 2]); }
+DS_FN real3 input3(const real* p, int slot) {
+  return vec(p[slot], p[slot + 1], p[slot + 2]);
+}
 
 /// Malley's method: cosine-weighted hemisphere, pdf cos / pi.
 DS_FN real3 cosine_hemisphere(real2 u) {

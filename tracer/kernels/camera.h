@@ -9,21 +9,24 @@ typedef struct {
   real3 origin, direction;  ///< world; unit direction
 } CameraRay;
 
-/// Direction through (x, y) in pixels, row 0 at the top; length such that its part along `forward` is 1.
+/// Direction through (x, y) in pixels, row 0 at the top; length such that its part along `forward`
+/// is 1.
 DS_FN real3 camera_direction(const ViewData* view, real x, real y) {
   const real sx = 2.0f * x / (float)view->width - 1.0f;
   const real sy = 1.0f - 2.0f * y / (float)view->height;
-  return vec(fma(sx, (real)(view->right[0]), fma(sy, (real)(view->up[0]), (real)(view->forward[0]))),
-             fma(sx, (real)(view->right[1]), fma(sy, (real)(view->up[1]), (real)(view->forward[1]))),
-             fma(sx, (real)(view->right[2]), fma(sy, (real)(view->up[2]), (real)(view->forward[2]))));
+  return vec(
+      fma(sx, (real)(view->right[0]), fma(sy, (real)(view->up[0]), (real)(view->forward[0]))),
+      fma(sx, (real)(view->right[1]), fma(sy, (real)(view->up[1]), (real)(view->forward[1]))),
+      fma(sx, (real)(view->right[2]), fma(sy, (real)(view->up[2]), (real)(view->forward[2]))));
 }
 
 DS_FN real3 camera_position(const ViewData* view) {
   return vec((real)(view->position[0]), (real)(view->position[1]), (real)(view->position[2]));
 }
 
-/// Offset from the pixel's centre, distributed as the pixel filter: the filter's inverse cumulative at u, so that every
-/// sample has weight 1 and touches one pixel only (Ernst, Stamminger and Greiner 2006, "Filter Importance Sampling").
+/// Offset from the pixel's centre, distributed as the pixel filter: the filter's inverse cumulative
+/// at u, so that every sample has weight 1 and touches one pixel only (Ernst, Stamminger and
+/// Greiner 2006, "Filter Importance Sampling").
 DS_FN real filter_offset(DS_GLOBAL float* table, real u) {
   const real x = u * (float)k_filter_size;
   const natural i = to_natural(x);
@@ -39,8 +42,10 @@ DS_FN CameraRay camera_ray(const ViewData* view, real x, real y, real2 lens) {
                            fma(d.x, (real)(view->lens_right[2]), d.y * view->lens_up[2]));
   CameraRay r;
   r.origin = add(camera_position(view), offset);
-  // Towards the point in focus, over the focus distance: a lens of radius 0 gives the pinhole's very bits.
-  r.direction = unit(sub(camera_direction(view, x, y), scale(offset, (real)(1.0f / view->focus_distance))));
+  // Towards the point in focus, over the focus distance: a lens of radius 0 gives the pinhole's
+  // very bits.
+  r.direction =
+      unit(sub(camera_direction(view, x, y), scale(offset, (real)(1.0f / view->focus_distance))));
   return r;
 }
 #else

@@ -1,26 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
-// One ray a pixel, through its centre and the pinhole: which object, how deep. Needs no material, light or lens.
+// One ray a pixel, through its centre and the pinhole: which object, how deep. Needs no material,
+// light or lens.
 #include "tracer/kernels/bvh.cl"
 #include "tracer/kernels/types.h"
 
-/// objects: object id of the nearest triangle, or k_none. depths: distance along the viewing axis in metres, or 0.
-__kernel void trace_geometry(const __global float8* restrict nodes, const __global float8* restrict leaves,
+DS_FN bool is_camera_invisible(const __global float* triangles, uint id) {
+  const uint flags = as_uint(triangles[id * k_triangle_words + k_triangle_flags]);
+  return (flags & k_flag_camera_invisible) != 0;
+}
+
+/// objects: object id of the nearest triangle, or k_none. depths: distance along the viewing axis
+/// in metres, or 0.
+__kernel void trace_geometry(const __global float8* restrict nodes,
+                             const __global float8* restrict leaves,
                              const __global float* restrict triangles, float reach,
-                             const __global ViewData* restrict view, __global uint* restrict objects,
-                             __global float* restrict depths) {
+                             const __global ViewData* restrict view,
+                             __global uint* restrict objects, __global float* restrict depths) {
   const uint i = get_global_id(0);
   if (i >= view->width * view->height) return;
   const float sx = 2.0f * ((float)(i % view->width) + 0.5f) / (float)view->width - 1.0f;
   const float sy = 1.0f - 2.0f * ((float)(i / view->width) + 0.5f) / (float)view->height;
-  // The direction's part along the viewing axis is 1, so a hit's distance in lengths of it is the planar depth.
+  // The direction's part along the viewing axis is 1, so a hit's distance in lengths of it is the
+  // planar depth.
   Ray ray;
   for (int axis = 0; axis < 3; ++axis) {
     ray.origin[axis] = view->position[axis];
     ray.direction[axis] = fma(sx, view->right[axis], fma(sy, view->up[axis], view->forward[axis]));
   }
   ray.t_max = 1e30f;
-  const Hit hit = nearest_hit(nodes, leaves, reach, ray);
+  Hit hit = nearest_hit(nodes, leaves, reach, ray);
+  float passed = 0.0f;
+  while (hit.id != k_none && is_camera_invisible(triangles, hit.id)) {
+    // On from just behind the surface: a few ulps of all that was passed.
+    const float step = hit.t + 1e-6f * (passed + hit.t);
+    passed += step;
+    for (int axis = 0; axis < 3; ++axis)
+      ray.origin[axis] = fma(step, ray.direction[axis], ray.origin[axis]);
+    hit = nearest_hit(nodes, leaves, reach, ray);
+  }
   const bool met = hit.id != k_none;
   objects[i] = met ? as_uint(triangles[hit.id * k_triangle_words + k_triangle_object]) : k_none;
-  depths[i] = met ? hit.t : 0.0f;
+  depths[i] = met ? passed + hit.t : 0.0f;
 }

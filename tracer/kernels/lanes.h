@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One work-item carries DS_LANES paths side by side. Shading code is written once in these types and reads like the
-// equations; which lanes a line applies to is said by a mask and `choose`.
+// One work-item carries DS_LANES paths side by side. Shading code is written once in these types
+// and reads like the equations; which lanes a line applies to is said by a mask and `choose`.
 //
 //   real, integer, natural   float, int and uint, DS_LANES wide
 //   mask                     what comparisons give: combine with & | !
@@ -13,79 +13,119 @@
 #include "tracer/kernels/language.h"
 
 #ifndef DS_LANES
-#define DS_LANES 1
+#  define DS_LANES 1
 #endif
 
 #if DS_LANES == 1
 
-#ifdef __OPENCL_VERSION__
+#  ifdef __OPENCL_VERSION__
 typedef float real;
 typedef int integer;
 typedef uint natural;
 typedef int mask;
-#else
+#  else
 using real = float;
 using integer = int;
 using natural = uint;
 using mask = bool;
-#endif
-#define DS_LANE_NUMBERS 0u
-DS_FN real to_real(natural x) { return (real)x; }
-DS_FN real to_real(integer x) { return (real)x; }
-DS_FN integer to_integer(real x) { return (integer)x; }
-DS_FN natural to_natural(real x) { return (natural)x; }
-DS_FN natural to_natural_bits(integer x) { return (natural)x; }
-DS_FN natural bits_of(real x) { return as_uint(x); }
-DS_FN real real_of(natural x) { return as_float(x); }
-DS_FN bool any_lane(mask m) { return m != 0; }
-DS_FN real load(DS_GLOBAL float* p, natural i) { return p[i]; }
+#  endif
+#  define DS_LANE_NUMBERS 0u
+DS_FN real to_real(natural x) {
+  return (real)x;
+}
+DS_FN real to_real(integer x) {
+  return (real)x;
+}
+DS_FN integer to_integer(real x) {
+  return (integer)x;
+}
+DS_FN natural to_natural(real x) {
+  return (natural)x;
+}
+DS_FN natural to_natural_bits(integer x) {
+  return (natural)x;
+}
+DS_FN natural bits_of(real x) {
+  return as_uint(x);
+}
+DS_FN real real_of(natural x) {
+  return as_float(x);
+}
+DS_FN bool any_lane(mask m) {
+  return m != 0;
+}
+DS_FN real load(DS_GLOBAL float* p, natural i) {
+  return p[i];
+}
 
 #else
 
-#define DS_JOIN_(a, b) a##b
-#define DS_JOIN(a, b) DS_JOIN_(a, b)
+#  define DS_JOIN_(a, b) a##b
+#  define DS_JOIN(a, b) DS_JOIN_(a, b)
 typedef DS_JOIN(float, DS_LANES) real;
 typedef DS_JOIN(int, DS_LANES) integer;
 typedef DS_JOIN(uint, DS_LANES) natural;
 typedef DS_JOIN(int, DS_LANES) mask;
-DS_FN real to_real(natural x) { return DS_JOIN(convert_float, DS_LANES)(x); }
-DS_FN real to_real(integer x) { return DS_JOIN(convert_float, DS_LANES)(x); }
-DS_FN integer to_integer(real x) { return DS_JOIN(convert_int, DS_LANES)(x); }
-DS_FN natural to_natural(real x) { return DS_JOIN(convert_uint, DS_LANES)(x); }
-DS_FN natural to_natural_bits(integer x) { return DS_JOIN(as_uint, DS_LANES)(x); }
-DS_FN natural bits_of(real x) { return DS_JOIN(as_uint, DS_LANES)(x); }
-DS_FN real real_of(natural x) { return DS_JOIN(as_float, DS_LANES)(x); }
+DS_FN real to_real(natural x) {
+  return DS_JOIN(convert_float, DS_LANES)(x);
+}
+DS_FN real to_real(integer x) {
+  return DS_JOIN(convert_float, DS_LANES)(x);
+}
+DS_FN integer to_integer(real x) {
+  return DS_JOIN(convert_int, DS_LANES)(x);
+}
+DS_FN natural to_natural(real x) {
+  return DS_JOIN(convert_uint, DS_LANES)(x);
+}
+DS_FN natural to_natural_bits(integer x) {
+  return DS_JOIN(as_uint, DS_LANES)(x);
+}
+DS_FN natural bits_of(real x) {
+  return DS_JOIN(as_uint, DS_LANES)(x);
+}
+DS_FN real real_of(natural x) {
+  return DS_JOIN(as_float, DS_LANES)(x);
+}
 
 // A mask's lanes are 0 or -1; narrowed to bytes they are one integer that is tested at once.
-#if DS_LANES == 4
-#define DS_LANE_NUMBERS ((uint4)(0, 1, 2, 3))
-DS_FN bool any_lane(mask m) { return as_uint(convert_char4(m)) != 0; }
-DS_FN real load(DS_GLOBAL float* p, natural i) { return (real)(p[i.s0], p[i.s1], p[i.s2], p[i.s3]); }
-#elif DS_LANES == 8
-#define DS_LANE_NUMBERS ((uint8)(0, 1, 2, 3, 4, 5, 6, 7))
-DS_FN bool any_lane(mask m) { return as_ulong(convert_char8(m)) != 0; }
+#  if DS_LANES == 4
+#    define DS_LANE_NUMBERS ((uint4)(0, 1, 2, 3))
+DS_FN bool any_lane(mask m) {
+  return as_uint(convert_char4(m)) != 0;
+}
+DS_FN real load(DS_GLOBAL float* p, natural i) {
+  return (real)(p[i.s0], p[i.s1], p[i.s2], p[i.s3]);
+}
+#  elif DS_LANES == 8
+#    define DS_LANE_NUMBERS ((uint8)(0, 1, 2, 3, 4, 5, 6, 7))
+DS_FN bool any_lane(mask m) {
+  return as_ulong(convert_char8(m)) != 0;
+}
 DS_FN real load(DS_GLOBAL float* p, natural i) {
   return (real)(p[i.s0], p[i.s1], p[i.s2], p[i.s3], p[i.s4], p[i.s5], p[i.s6], p[i.s7]);
 }
-#elif DS_LANES == 16
-#define DS_LANE_NUMBERS ((uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#  elif DS_LANES == 16
+#    define DS_LANE_NUMBERS ((uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
 DS_FN bool any_lane(mask m) {
   const ulong2 bytes = as_ulong2(convert_char16(m));
   return (bytes.x | bytes.y) != 0;
 }
 DS_FN real load(DS_GLOBAL float* p, natural i) {
-  return (real)(p[i.s0], p[i.s1], p[i.s2], p[i.s3], p[i.s4], p[i.s5], p[i.s6], p[i.s7], p[i.s8], p[i.s9], p[i.sa],
-                p[i.sb], p[i.sc], p[i.sd], p[i.se], p[i.sf]);
+  return (real)(p[i.s0], p[i.s1], p[i.s2], p[i.s3], p[i.s4], p[i.s5], p[i.s6], p[i.s7], p[i.s8],
+                p[i.s9], p[i.sa], p[i.sb], p[i.sc], p[i.sd], p[i.se], p[i.sf]);
 }
-#else
-#error "DS_LANES must be 1, 4, 8 or 16"
-#endif
+#  else
+#    error "DS_LANES must be 1, 4, 8 or 16"
+#  endif
 
 #endif
 
 /// The value of the first lane that is set; at least one must be.
 #if DS_LANES == 1
-DS_FN uint first_of(mask m, natural a) { return a; }
+DS_FN uint first_of(mask m, natural a) {
+  return a;
+}
 #else
 DS_FN uint first_of(mask m, natural a) {
   int set[DS_LANES] __attribute__((aligned(64)));
@@ -99,18 +139,36 @@ DS_FN uint first_of(mask m, natural a) {
 }
 #endif
 
-DS_FN real choose(mask m, real a, real b) { return m ? a : b; }
-DS_FN natural choose_natural(mask m, natural a, natural b) { return m ? a : b; }
-DS_FN integer choose_integer(mask m, integer a, integer b) { return m ? a : b; }
-DS_FN natural load_natural(DS_GLOBAL float* p, natural i) { return bits_of(load(p, i)); }
+DS_FN real choose(mask m, real a, real b) {
+  return m ? a : b;
+}
+DS_FN natural choose_natural(mask m, natural a, natural b) {
+  return m ? a : b;
+}
+DS_FN integer choose_integer(mask m, integer a, integer b) {
+  return m ? a : b;
+}
+DS_FN natural load_natural(DS_GLOBAL float* p, natural i) {
+  return bits_of(load(p, i));
+}
 
 /// The lesser and the greater; where either is NaN, the second.
-DS_FN real lesser(real a, real b) { return choose(a < b, a, b); }
-DS_FN real greater(real a, real b) { return choose(a > b, a, b); }
-DS_FN real clamp01(real a) { return lesser(greater(a, (real)(0.0f)), (real)(1.0f)); }
-DS_FN real absolute(real a) { return real_of(bits_of(a) & 0x7fffffffu); }
+DS_FN real lesser(real a, real b) {
+  return choose(a < b, a, b);
+}
+DS_FN real greater(real a, real b) {
+  return choose(a > b, a, b);
+}
+DS_FN real clamp01(real a) {
+  return lesser(greater(a, (real)(0.0f)), (real)(1.0f));
+}
+DS_FN real absolute(real a) {
+  return real_of(bits_of(a) & 0x7fffffffu);
+}
 /// `magnitude` with the sign bit of `sign`.
 DS_FN real with_sign_of(real magnitude, real sign) {
   return real_of((bits_of(magnitude) & 0x7fffffffu) | (bits_of(sign) & 0x80000000u));
 }
-DS_FN real square(real a) { return a * a; }
+DS_FN real square(real a) {
+  return a * a;
+}

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What every light answers. A light KIND in lights/KIND.h has
 //
-//   LightSample KIND_sample(LightTables t, uint at, real3 from, real2 u)   a way from a surface point to the light
-//   real3       KIND_escape(LightTables t, uint at, real3 direction, real* pdf)
-//                                    what a path that leaves the scene meets; only lights of DS_ESCAPE_LIGHTS have it
+//   LightSample KIND_sample(LightTables t, uint at, real3 from, real2 u)   a way from a surface
+//   point to the light real3       KIND_escape(LightTables t, uint at, real3 direction, real* pdf)
+//                                    what a path that leaves the scene meets; only lights of
+//                                    DS_ESCAPE_LIGHTS have it
 //
-// `at` is the offset of the light's parameters in `lights`, the same in all lanes: lanes that chose different lights are
-// served light by light. Pdfs are per steradian at the surface point and do not include the choice among lights.
+// `at` is the offset of the light's parameters in `lights`, the same in all lanes: lanes that chose
+// different lights are served light by light. Pdfs are per steradian at the surface point and do
+// not include the choice among lights.
 #pragma once
 
 #include "tracer/kernels/math.h"
@@ -20,12 +22,13 @@ typedef struct {
 } LightTables;
 
 typedef struct {
-  real3 wi;        ///< unit, to the light
-  real3 target;    ///< where the shadow ray ends, for bounded lights
-  mask bounded;    ///< false: the light is beyond the scene
-  mask dirac;      ///< a point of the sphere of directions: `radiance` is irradiance at normal incidence, pdf is 1
+  real3 wi;      ///< unit, to the light
+  real3 target;  ///< where the shadow ray ends, for bounded lights
+  mask bounded;  ///< false: the light is beyond the scene
+  mask dirac;    ///< a point of the sphere of directions: `radiance` is irradiance at normal
+                 ///< incidence, pdf is 1
   real3 radiance;
-  real pdf;        ///< 0: nothing comes this way
+  real pdf;  ///< 0: nothing comes this way
 } LightSample;
 
 DS_FN LightSample no_light(void) {
@@ -50,8 +53,8 @@ DS_FN LightSample choose(mask m, LightSample a, LightSample b) {
   return s;
 }
 
-/// Index of the interval of a cumulative table that holds u: the first i with u < table[i], or the last. `count` >= 1
-/// ascending entries from `at` on. Every lane takes the same number of steps.
+/// Index of the interval of a cumulative table that holds u: the first i with u < table[i], or the
+/// last. `count` >= 1 ascending entries from `at` on. Every lane takes the same number of steps.
 DS_FN natural find_interval(DS_GLOBAL float* table, natural at, uint count, real u) {
   natural low = (natural)(0u);
   for (uint step = 1u << (31u - leading_zeros(count)); step != 0u; step >>= 1) {
@@ -68,4 +71,6 @@ DS_FN real interval_start(DS_GLOBAL float* table, natural at, natural i) {
 }
 
 /// Three words, the same in all lanes.
-DS_FN real3 uniform3(DS_GLOBAL float* p) { return vec((real)(p[0]), (real)(p[1]), (real)(p[2])); }
+DS_FN real3 uniform3(DS_GLOBAL float* p) {
+  return vec((real)(p[0]), (real)(p[1]), (real)(p[2]));
+}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every material and texture there is, for the host: X(SDL name, kernel prefix, PREFIX in capitals). A scene's program
-// gets a list of those it uses; this file is in none, so a new line here makes no picture stale.
+// Every material and texture there is, for the host: X(SDL name, kernel prefix, PREFIX in
+// capitals). A scene's program gets a list of those it uses; this file is in none, so a new line
+// here makes no picture stale.
 #pragma once
 
 #define DS_ALL_MATERIALS(X)      \
@@ -11,12 +12,12 @@
   X("mix", mix, MIX)             \
   X("glass", glass, GLASS)
 
-#define DS_ALL_TEXTURES(X)                           \
-  X("imagemap", imagemap, IMAGEMAP)                  \
+#define DS_ALL_TEXTURES(X)                            \
+  X("imagemap", imagemap, IMAGEMAP)                   \
   X("checkerboard3d", checkerboard3d, CHECKERBOARD3D) \
-  X("marble", marble, MARBLE)                        \
-  X("fbm", fbm, FBM)                                 \
-  X("scale", scale, SCALE)                           \
-  X("mix", mix_texture, MIX_TEXTURE)                 \
-  X("add", add, ADD)                                 \
+  X("marble", marble, MARBLE)                         \
+  X("fbm", fbm, FBM)                                  \
+  X("scale", scale, SCALE)                            \
+  X("mix", mix_texture, MIX_TEXTURE)                  \
+  X("add", add, ADD)                                  \
   X("subtract", subtract, SUBTRACT)

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// GGX microfacets (Walter et al. 2007; anisotropic and height-correlated after Heitz 2014) and Fresnel reflectances.
-// Roughness here is the distribution's alpha. LuxCore's Schlick distribution of roughness r = u v is GGX with alpha^2 = r.
+// GGX microfacets (Walter et al. 2007; anisotropic and height-correlated after Heitz 2014) and
+// Fresnel reflectances. Roughness here is the distribution's alpha. LuxCore's Schlick distribution
+// of roughness r = u v is GGX with alpha^2 = r.
 #pragma once
 
 #include "tracer/kernels/bsdf.h"
 
-/// Below this alpha a half vector's float32 rounding is as wide as the lobe: roughness is raised to it.
+/// Below this alpha a half vector's float32 rounding is as wide as the lobe: roughness is raised to
+/// it.
 #define k_least_alpha 1e-3f
 
 typedef struct {
@@ -45,7 +47,8 @@ DS_FN Lobe ggx_lobe(Roughness r, real3 wo, real3 wi, real3 h) {
   return lobe;
 }
 
-/// A normal visible from wo. Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", listing 3.
+/// A normal visible from wo. Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical
+/// Caps", listing 3.
 DS_FN real3 ggx_visible_normal(Roughness r, real3 wo, real2 u) {
   const real3 stretched = unit(vec(r.x * wo.x, r.y * wo.y, wo.z));
   const SinCos phi = sin_cos_turns(u.x);
@@ -56,10 +59,14 @@ DS_FN real3 ggx_visible_normal(Roughness r, real3 wo, real2 u) {
   return unit(vec(r.x * h.x, r.y * h.y, greater(h.z, (real)(1e-7f))));
 }
 
-DS_FN real3 half_vector(real3 wo, real3 wi) { return unit(add(wo, wi)); }
+DS_FN real3 half_vector(real3 wo, real3 wi) {
+  return unit(add(wo, wi));
+}
 
 /// wo mirrored about h.
-DS_FN real3 reflect_about(real3 wo, real3 h) { return sub(scale(h, 2.0f * dot(wo, h)), wo); }
+DS_FN real3 reflect_about(real3 wo, real3 h) {
+  return sub(scale(h, 2.0f * dot(wo, h)), wo);
+}
 
 /// Schlick 1994: reflectance at normal incidence to white at grazing.
 DS_FN real3 schlick_fresnel(real3 at_normal, real cosine) {
@@ -67,8 +74,8 @@ DS_FN real3 schlick_fresnel(real3 at_normal, real cosine) {
   return lerp3(at_normal, splat((real)(1.0f)), w);
 }
 
-/// Reflectance of a conductor of complex index n + ik in vacuum, unpolarised (Born and Wolf, 14.2; the form of Lagarde
-/// 2013). cosine in [0, 1]; n >= 0, k >= 0.
+/// Reflectance of a conductor of complex index n + ik in vacuum, unpolarised (Born and Wolf, 14.2;
+/// the form of Lagarde 2013). cosine in [0, 1]; n >= 0, k >= 0.
 DS_FN real conductor_fresnel(real n, real k, real cosine) {
   const real cos2 = cosine * cosine;
   const real sin2 = 1.0f - cos2;
@@ -86,7 +93,8 @@ DS_FN real conductor_fresnel(real n, real k, real cosine) {
   return clamp01(0.5f * (rs + rp));
 }
 
-/// Reflectance of a smooth dielectric, unpolarised. `eta`: index of the far side over the near side's. cosine in [0, 1].
+/// Reflectance of a smooth dielectric, unpolarised. `eta`: index of the far side over the near
+/// side's. cosine in [0, 1].
 /// `*cos_t`: cosine of the refracted direction, 0 at total reflection (where the result is 1).
 DS_FN real dielectric_fresnel(real eta, real cosine, real* cos_t) {
   const real sin2_t = (1.0f - cosine * cosine) / (eta * eta);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gradient noise (Perlin 2002, "Improving Noise") over an integer lattice hashed by arithmetic, not by a table: lanes
-// need no gathers, and the pattern has no period of 256.
+// Gradient noise (Perlin 2002, "Improving Noise") over an integer lattice hashed by arithmetic, not
+// by a table: lanes need no gathers, and the pattern has no period of 256.
 #pragma once
 
 #include "tracer/kernels/sampler.h"
 
-/// One of Perlin's twelve edge gradients (four of them twice), chosen by the lattice point, times the offset from it.
+/// One of Perlin's twelve edge gradients (four of them twice), chosen by the lattice point, times
+/// the offset from it.
 DS_FN real noise_corner(natural x, natural y, natural z, real dx, real dy, real dz) {
   const natural h = mix_bits(x * 0x8da6b343u + y * 0xd8163841u + z * 0xcb1ab31fu) >> 28;
   const real a = choose(h < 8u, dx, dy);
@@ -14,12 +15,19 @@ DS_FN real noise_corner(natural x, natural y, natural z, real dx, real dy, real 
 }
 
 /// The lattice's number of a whole coordinate, modulo 2^32.
-DS_FN natural lattice(real whole) { return to_natural_bits(to_integer(whole)); }
+DS_FN natural lattice(real whole) {
+  return to_natural_bits(to_integer(whole));
+}
 
-DS_FN real noise_fade(real t) { return t * t * t * fma(t, fma(t, (real)(6.0f), (real)(-15.0f)), (real)(10.0f)); }
-DS_FN real noise_between(real a, real b, real t) { return fma(t, b - a, a); }
+DS_FN real noise_fade(real t) {
+  return t * t * t * fma(t, fma(t, (real)(6.0f), (real)(-15.0f)), (real)(10.0f));
+}
+DS_FN real noise_between(real a, real b, real t) {
+  return fma(t, b - a, a);
+}
 
-/// In [-1, 1], 0 at lattice points, mean 0. Domain: |coordinate| < 2^30; beyond it the lattice wraps.
+/// In [-1, 1], 0 at lattice points, mean 0. Domain: |coordinate| < 2^30; beyond it the lattice
+/// wraps.
 DS_FN real gradient_noise(real3 p) {
   const real3 cell = vec(floor(p.x), floor(p.y), floor(p.z));
   const real3 d = sub(p, cell);
@@ -35,12 +43,14 @@ DS_FN real gradient_noise(real3 p) {
                                  noise_corner(x + 1u, y + 1u, z, d.x - 1.0f, d.y - 1.0f, d.z), fx);
   const real n01 = noise_between(noise_corner(x, y, z + 1u, d.x, d.y, d.z - 1.0f),
                                  noise_corner(x + 1u, y, z + 1u, d.x - 1.0f, d.y, d.z - 1.0f), fx);
-  const real n11 = noise_between(noise_corner(x, y + 1u, z + 1u, d.x, d.y - 1.0f, d.z - 1.0f),
-                                 noise_corner(x + 1u, y + 1u, z + 1u, d.x - 1.0f, d.y - 1.0f, d.z - 1.0f), fx);
+  const real n11 =
+      noise_between(noise_corner(x, y + 1u, z + 1u, d.x, d.y - 1.0f, d.z - 1.0f),
+                    noise_corner(x + 1u, y + 1u, z + 1u, d.x - 1.0f, d.y - 1.0f, d.z - 1.0f), fx);
   return noise_between(noise_between(n00, n10, fy), noise_between(n01, n11, fy), fz);
 }
 
-/// Fractal sum: octave o has frequency 1.99^o and weight roughness^o (Musgrave; the lacunarity keeps lattices apart).
+/// Fractal sum: octave o has frequency 1.99^o and weight roughness^o (Musgrave; the lacunarity
+/// keeps lattices apart).
 DS_FN real fractal_noise(real3 p, real roughness, int octaves) {
   real sum = (real)(0.0f);
   real weight = (real)(1.0f);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The path tracer: unidirectional, next-event estimation, multiple importance sampling, Russian roulette. One work-item
-// owns DS_LANES pixels. A lane whose path has ended starts its pixel's next sample at once, so lanes stay busy; a pixel's
-// samples are added in order, so the picture does not depend on how pixels are dealt out.
+// The path tracer: unidirectional, next-event estimation, multiple importance sampling, Russian
+// roulette. One work-item owns DS_LANES pixels. A lane whose path has ended starts its pixel's next
+// sample at once, so lanes stay busy; a pixel's samples are added in order, so the picture does not
+// depend on how pixels are dealt out.
 #include "tracer/kernels/bvh.cl"
 #include "tracer/kernels/camera.h"
 #include "tracer/kernels/shade.h"
@@ -13,11 +14,12 @@ enum { k_pair_choices, k_pair_light, k_pair_direction, k_pair_lobe, k_pairs_vert
 typedef struct {
   real3 origin, direction;
   real3 throughput, radiance;
-  real pdf;          ///< of the BSDF sample that made this ray; -1: only this ray could find what it meets
-  real eta_scale;    ///< product of refractions' radiance scales: roulette must not mistake it for loss
+  real pdf;  ///< of the BSDF sample that made this ray; -1: only this ray could find what it meets
+  real eta_scale;    ///< product of refractions' radiance scales: roulette must not mistake it for
+                     ///< loss
   natural vertices;  ///< surface points visited
   natural diffuse, glossy, specular;  ///< bounces of each sort
-  natural sample;    ///< number of the sample in flight
+  natural sample;                     ///< number of the sample in flight
   mask alive;
 } Paths;
 
@@ -35,7 +37,8 @@ typedef struct {
   LightTables lights;
 } SceneTables;
 
-/// Pixels of this work-item: 8x8 tiles, within them blocks of 4x4, so that lanes look at neighbouring things.
+/// Pixels of this work-item: 8x8 tiles, within them blocks of 4x4, so that lanes look at
+/// neighbouring things.
 DS_FN Pixels pixels_of(uint item, const ViewData* view) {
   const natural i = item * (uint)DS_LANES + DS_LANE_NUMBERS;
   const natural tile = i >> 6;
@@ -51,9 +54,10 @@ DS_FN Pixels pixels_of(uint item, const ViewData* view) {
 }
 
 /// Starts the next sample in the lanes of `start`.
-DS_FN void start_paths(Paths* paths, mask start, const Pixels* pixels, const SceneData* scene, const ViewData* view,
-                       const SceneTables* t) {
-  const Sampler sampler = sampler_for(view->seed_low, view->seed_high, pixels->index, paths->sample);
+DS_FN void start_paths(Paths* paths, mask start, const Pixels* pixels, const SceneData* scene,
+                       const ViewData* view, const SceneTables* t) {
+  const Sampler sampler =
+      sampler_for(view->seed_low, view->seed_high, pixels->index, paths->sample);
   const real2 f = sample_pair(sampler, (natural)((uint)k_pair_filter));
   DS_GLOBAL float* filter = t->lights.tables + scene->filter_table;
   real2 lens;
@@ -61,7 +65,8 @@ DS_FN void start_paths(Paths* paths, mask start, const Pixels* pixels, const Sce
 #ifdef DS_LENS
   lens = sample_pair(sampler, (natural)((uint)k_pair_lens));
 #endif
-  const CameraRay ray = camera_ray(view, pixels->x + filter_offset(filter, f.x), pixels->y + filter_offset(filter, f.y), lens);
+  const CameraRay ray = camera_ray(view, pixels->x + filter_offset(filter, f.x),
+                                   pixels->y + filter_offset(filter, f.y), lens);
   const real zero = (real)(0.0f);
   const natural none = (natural)(0u);
   paths->origin = choose(start, ray.origin, paths->origin);
@@ -128,7 +133,9 @@ DS_FN void trace_lanes(const SceneTables* t, float reach, const LaneRays* rays, 
   }
 }
 
-DS_FN real hit_word(const LaneHits* hits, int i) { return *(const real*)hits->word[i]; }
+DS_FN real hit_word(const LaneHits* hits, int i) {
+  return *(const real*)hits->word[i];
+}
 DS_FN real3 hit_word3(const LaneHits* hits, int i) {
   return vec(hit_word(hits, i), hit_word(hits, i + 1), hit_word(hits, i + 2));
 }
@@ -142,7 +149,8 @@ DS_FN Surface surface_of(const LaneHits* hits, real3 wo) {
   const real3 p2 = hit_word3(hits, k_triangle_positions + 6);
   Surface s;
   s.position = add_scaled(add_scaled(scale(p0, b0), p1, b1), p2, b2);
-  const real3 size = vec(absolute(p0.x) + absolute(p1.x) + absolute(p2.x), absolute(p0.y) + absolute(p1.y) + absolute(p2.y),
+  const real3 size = vec(absolute(p0.x) + absolute(p1.x) + absolute(p2.x),
+                         absolute(p0.y) + absolute(p1.y) + absolute(p2.y),
                          absolute(p0.z) + absolute(p1.z) + absolute(p2.z));
   s.error = scale(size, (real)(k_position_error));
   const real3 own = unit(cross(scale(sub(p1, p0), (real)(1e6f)), scale(sub(p2, p0), (real)(1e6f))));
@@ -156,14 +164,17 @@ DS_FN Surface surface_of(const LaneHits* hits, real3 wo) {
   // Opposite corner normals can cancel; the triangle's own normal stands in.
   const real3 smooth = choose(dot(interpolated, interpolated) > 1e-6f, unit(interpolated), own);
   s.shading = facing_normal(scale(smooth, side), wo);
-  s.u = fma(b0, hit_word(hits, k_triangle_uvs), fma(b1, hit_word(hits, k_triangle_uvs + 2), b2 * hit_word(hits, k_triangle_uvs + 4)));
-  s.v = fma(b0, hit_word(hits, k_triangle_uvs + 1), fma(b1, hit_word(hits, k_triangle_uvs + 3), b2 * hit_word(hits, k_triangle_uvs + 5)));
+  s.u = fma(b0, hit_word(hits, k_triangle_uvs),
+            fma(b1, hit_word(hits, k_triangle_uvs + 2), b2 * hit_word(hits, k_triangle_uvs + 4)));
+  s.v = fma(b0, hit_word(hits, k_triangle_uvs + 1),
+            fma(b1, hit_word(hits, k_triangle_uvs + 3), b2 * hit_word(hits, k_triangle_uvs + 5)));
   return s;
 }
 
 #ifdef DS_MESH_LIGHTS
 /// Radiance of an emitting triangle met by chance, weighed against having sampled it.
-DS_FN real3 emitted(const SceneTables* t, const LaneHits* hits, const Surface* s, real3 origin, real3 wo, mask hit, real pdf) {
+DS_FN real3 emitted(const SceneTables* t, const LaneHits* hits, const Surface* s, real3 origin,
+                    real3 wo, mask hit, real pdf) {
   const natural light = bits_of(hit_word(hits, k_triangle_light));
   const mask emits = hit & (light != k_none) & s->outside;
   if (!any_lane(emits)) return splat((real)(0.0f));
@@ -186,17 +197,20 @@ typedef struct {
 } DirectLight;
 
 #ifdef DS_LIGHTS_SAMPLED
-DS_FN DirectLight direct_light(const Paths* paths, mask active, const Surface* s, const MaterialPoint* m, Frame frame,
-                               Viewer viewer, Sampler sampler, natural pair, real choice, const SceneData* scene,
+DS_FN DirectLight direct_light(const Paths* paths, mask active, const Surface* s,
+                               const MaterialPoint* m, Frame frame, Viewer viewer, Sampler sampler,
+                               natural pair, real choice, const SceneData* scene,
                                const SceneTables* t, LaneRays* rays) {
-  const LightSample light = sample_light(t->lights, scene->light_table, scene->light_count, active, s->position, choice,
-                                         sample_pair(sampler, pair + (uint)k_pair_light));
+  const LightSample light =
+      sample_light(t->lights, scene->light_table, scene->light_count, active, s->position, choice,
+                   sample_pair(sampler, pair + (uint)k_pair_light));
   const BsdfValue bsdf = evaluate_material(m, viewer, to_local(frame, light.wi));
   const real weight = choose(light.dirac, (real)(1.0f), power_heuristic(light.pdf, bsdf.pdf));
   const real3 arriving = scale(light.radiance, weight / greater(light.pdf, (real)(1e-30f)));
   DirectLight d;
   d.radiance = mul(mul(paths->throughput, bsdf.value), arriving);
-  d.wanted = active & (light.pdf > 0.0f) & (max_component(d.radiance) > 0.0f) & (dot(light.wi, s->normal) > 0.0f);
+  d.wanted = active & (light.pdf > 0.0f) & (max_component(d.radiance) > 0.0f) &
+             (dot(light.wi, s->normal) > 0.0f);
   const real3 origin = offset_origin(s->position, s->error, s->normal, light.wi);
   const real3 way = sub(light.target, origin);
   const real distance = sqrt(greater(dot(way, way), (real)(1e-30f)));
@@ -206,10 +220,12 @@ DS_FN DirectLight direct_light(const Paths* paths, mask active, const Surface* s
   return d;
 }
 
-DS_FN void add_unshadowed(Paths* paths, DirectLight d, const SceneTables* t, float reach, const LaneRays* rays) {
+DS_FN void add_unshadowed(Paths* paths, DirectLight d, const SceneTables* t, float reach,
+                          const LaneRays* rays) {
   int clear[DS_LANES] __attribute__((aligned(64)));
   for (int lane = 0; lane < DS_LANES; ++lane) {
-    clear[lane] = rays->wanted[lane] && !any_hit(t->nodes, t->leaves, reach, lane_ray(rays, lane)) ? -1 : 0;
+    clear[lane] =
+        rays->wanted[lane] && !any_hit(t->nodes, t->leaves, reach, lane_ray(rays, lane)) ? -1 : 0;
   }
   const mask lit = d.wanted & (*(mask*)clear != 0);
   paths->radiance = add(paths->radiance, choose(lit, d.radiance, splat((real)(0.0f))));
@@ -217,31 +233,41 @@ DS_FN void add_unshadowed(Paths* paths, DirectLight d, const SceneTables* t, flo
 #endif
 
 /// Continues the paths by a BSDF sample; returns the lanes whose path ends here.
-DS_FN mask scatter(Paths* paths, mask active, const Surface* s, const MaterialPoint* m, Frame frame, Viewer viewer,
-                   Sampler sampler, natural pair, real lobe_choice, real roulette, const ViewData* view) {
+DS_FN mask scatter(Paths* paths, mask active, const Surface* s, const MaterialPoint* m, Frame frame,
+                   Viewer viewer, Sampler sampler, natural pair, real lobe_choice, real roulette,
+                   const ViewData* view) {
   real2 lobe;
   lobe.x = lobe_choice;
   lobe.y = (real)(0.0f);
-  const BsdfSample b = sample_material(m, viewer, sample_pair(sampler, pair + (uint)k_pair_direction), lobe);
+  const BsdfSample b =
+      sample_material(m, viewer, sample_pair(sampler, pair + (uint)k_pair_direction), lobe);
   const real3 wi = to_world(frame, b.wi);
-  // A sampled direction must leave on the side its lobe is on, also by the true surface: light does not leak through.
+  // A sampled direction must leave on the side its lobe is on, also by the true surface: light does
+  // not leak through.
   const real true_side = dot(wi, s->normal);
   const mask leaks = choose(b.wi.z > 0.0f, true_side, -true_side) <= 0.0f;
   const real3 throughput = mul(paths->throughput, b.weight);
   const real eta_scale = paths->eta_scale * b.eta_scale;
   const mask plays = paths->vertices >= view->roulette_depth;
-  const real survival = choose(plays, lesser(greater(max_component(throughput) / eta_scale, (real)(view->roulette_cap)), (real)(1.0f)), (real)(1.0f));
+  const real survival =
+      choose(plays,
+             lesser(greater(max_component(throughput) / eta_scale, (real)(view->roulette_cap)),
+                    (real)(1.0f)),
+             (real)(1.0f));
   const mask matte = !(b.specular | b.glossy);
   paths->diffuse += choose_natural(matte, (natural)(1u), (natural)(0u));
   paths->glossy += choose_natural(b.glossy & !b.specular, (natural)(1u), (natural)(0u));
   paths->specular += choose_natural(b.specular, (natural)(1u), (natural)(0u));
-  const mask too_deep = (paths->diffuse > view->depth_diffuse) | (paths->glossy > view->depth_glossy) |
+  const mask too_deep = (paths->diffuse > view->depth_diffuse) |
+                        (paths->glossy > view->depth_glossy) |
                         (paths->specular > view->depth_specular);
-  const mask ends = !b.valid | leaks | (roulette >= survival) | (max_component(throughput) <= 0.0f) | too_deep;
+  const mask ends =
+      !b.valid | leaks | (roulette >= survival) | (max_component(throughput) <= 0.0f) | too_deep;
   paths->throughput = choose(active, scale(throughput, 1.0f / survival), paths->throughput);
   paths->eta_scale = choose(active, eta_scale, paths->eta_scale);
   paths->pdf = choose(active, choose(b.specular, (real)(-1.0f), b.pdf), paths->pdf);
-  paths->origin = choose(active, offset_origin(s->position, s->error, s->normal, wi), paths->origin);
+  paths->origin =
+      choose(active, offset_origin(s->position, s->error, s->normal, wi), paths->origin);
   paths->direction = choose(active, unit(wi), paths->direction);
   return active & ends;
 }
@@ -260,7 +286,8 @@ DS_FN void load_sums(Sums* sums, const __global float* film, const Pixels* pixel
   sums->rejected = load(film + k_film_rejected * plane, pixels->index);
 }
 
-/// Adds the finished samples in `done`. Neumaier 1974: what the sum's rounding cuts off is summed beside it.
+/// Adds the finished samples in `done`. Neumaier 1974: what the sum's rounding cuts off is summed
+/// beside it.
 DS_FN void add_samples(Sums* sums, mask done, real3 radiance) {
   const real sample[3] = {radiance.x, radiance.y, radiance.z};
   mask good = done;
@@ -270,7 +297,8 @@ DS_FN void add_samples(Sums* sums, mask done, real3 radiance) {
     const real x = choose(good, sample[c], (real)(0.0f));
     const real total = sums->sum[c] + x;
     const mask sum_is_greater = absolute(sums->sum[c]) >= absolute(x);
-    const real lost = choose(sum_is_greater, (sums->sum[c] - total) + x, (x - total) + sums->sum[c]);
+    const real lost =
+        choose(sum_is_greater, (sums->sum[c] - total) + x, (x - total) + sums->sum[c]);
     sums->compensation[c] = sums->compensation[c] + lost;
     sums->sum[c] = total;
   }
@@ -295,32 +323,48 @@ DS_FN void store_sums(const Sums* sums, __global float* film, const Pixels* pixe
   }
 }
 
-/// One step of all paths: to the next surface, its light, its scattering. Returns the lanes whose sample is complete.
-DS_FN mask advance(Paths* paths, const Pixels* pixels, const SceneData* scene, const ViewData* view, const SceneTables* t) {
+/// One step of all paths: to the next surface, its light, its scattering. Returns the lanes whose
+/// sample is complete.
+DS_FN mask advance(Paths* paths, const Pixels* pixels, const SceneData* scene, const ViewData* view,
+                   const SceneTables* t) {
   LaneRays rays;
   LaneHits hits;
   store_rays(&rays, paths->origin, paths->direction, (real)(1e30f), paths->alive);
   trace_lanes(t, scene->reach, &rays, &hits);
-  const mask hit = paths->alive & (*(mask*)hits.hit != 0);
+  mask hit = paths->alive & (*(mask*)hits.hit != 0);
   const mask escapes = paths->alive & !hit;
   mask done = escapes;
 #ifdef DS_ESCAPE_LIGHTS
   if (any_lane(escapes)) {
-    const real3 sky = escape_radiance(t->lights, scene->first_escape_light, scene->light_count, paths->direction, paths->pdf);
-    paths->radiance = choose(escapes, add(paths->radiance, mul(paths->throughput, sky)), paths->radiance);
+    const real3 sky = escape_radiance(t->lights, scene->first_escape_light, scene->light_count,
+                                      paths->direction, paths->pdf);
+    paths->radiance =
+        choose(escapes, add(paths->radiance, mul(paths->throughput, sky)), paths->radiance);
   }
 #endif
   if (!any_lane(hit)) return done;
   const real3 wo = negate(paths->direction);
   const Surface s = surface_of(&hits, wo);
+#ifdef DS_CAMERA_INVISIBLE
+  const natural flags = bits_of(hit_word(&hits, k_triangle_flags));
+  const mask passes =
+      hit & (paths->vertices == 0u) & ((flags & (uint)k_flag_camera_invisible) != 0u);
+  const real3 behind = offset_origin(s.position, s.error, s.normal, paths->direction);
+  paths->origin = choose(passes, behind, paths->origin);
+  hit = hit & !passes;
+  if (!any_lane(hit)) return done;
+#endif
 #ifdef DS_MESH_LIGHTS
-  paths->radiance = add(paths->radiance, mul(paths->throughput, emitted(t, &hits, &s, paths->origin, wo, hit, paths->pdf)));
+  paths->radiance =
+      add(paths->radiance,
+          mul(paths->throughput, emitted(t, &hits, &s, paths->origin, wo, hit, paths->pdf)));
 #endif
   const mask last = hit & (paths->vertices >= view->depth_total);
   done = done | last;
   const mask active = hit & !last;
   if (!any_lane(active)) return done;
-  const Sampler sampler = sampler_for(view->seed_low, view->seed_high, pixels->index, paths->sample);
+  const Sampler sampler =
+      sampler_for(view->seed_low, view->seed_high, pixels->index, paths->sample);
   const natural pair = paths->vertices * (uint)k_pairs_vertex + (uint)k_pairs_camera;
   paths->vertices += choose_natural(active, (natural)(1u), (natural)(0u));
   const real2 choices = sample_pair(sampler, pair + (uint)k_pair_choices);
@@ -329,7 +373,8 @@ DS_FN mask advance(Paths* paths, const Pixels* pixels, const SceneData* scene, c
   lobe_choice = sample_pair(sampler, pair + (uint)k_pair_lobe).x;
 #endif
   MaterialPoint m;
-  natural material = choose_natural(hit, bits_of(hit_word(&hits, k_triangle_material)), (natural)(0u));
+  natural material =
+      choose_natural(hit, bits_of(hit_word(&hits, k_triangle_material)), (natural)(0u));
 #ifdef DS_MIX_NUMBER
   material = resolve_mix(t->materials, material, active, &s, &lobe_choice, &m);
 #else
@@ -341,17 +386,20 @@ DS_FN mask advance(Paths* paths, const Pixels* pixels, const SceneData* scene, c
   viewer.wo.z = greater(viewer.wo.z, (real)(1e-3f));
   viewer.outside = s.outside;
 #ifdef DS_LIGHTS_SAMPLED
-  const DirectLight direct = direct_light(paths, active, &s, &m, frame, viewer, sampler, pair, choices.x, scene, t, &rays);
+  const DirectLight direct =
+      direct_light(paths, active, &s, &m, frame, viewer, sampler, pair, choices.x, scene, t, &rays);
   if (any_lane(direct.wanted)) add_unshadowed(paths, direct, t, scene->reach, &rays);
 #endif
-  return done | scatter(paths, active, &s, &m, frame, viewer, sampler, pair, lobe_choice, choices.y, view);
+  return done |
+         scatter(paths, active, &s, &m, frame, viewer, sampler, pair, lobe_choice, choices.y, view);
 }
 
-__kernel void trace_paths(const __global float8* restrict nodes, const __global float8* restrict leaves,
-                          const __global float* restrict triangles, const __global float* restrict materials,
-                          const __global float* restrict programs, const __global float* restrict lights,
-                          const __global float* restrict tables, const __global SceneData* restrict scene_data,
-                          const __global ViewData* restrict view_data, __global float* restrict film) {
+__kernel void trace_paths(
+    const __global float8* restrict nodes, const __global float8* restrict leaves,
+    const __global float* restrict triangles, const __global float* restrict materials,
+    const __global float* restrict programs, const __global float* restrict lights,
+    const __global float* restrict tables, const __global SceneData* restrict scene_data,
+    const __global ViewData* restrict view_data, __global float* restrict film) {
   const SceneData scene = *scene_data;
   const ViewData view = *view_data;
   SceneTables t;

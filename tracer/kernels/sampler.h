@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hash-based Owen-scrambled Sobol' points (Burley 2020, "Practical Hash-based Owen Scrambling", JCGT 9(4)): every number
-// is a pure function of seed, pixel, sample and dimension. Dimensions come in pairs; each pair is the (0,2)-sequence of
-// Sobol's first two dimensions, its order shuffled and its digits scrambled by hashes of its own ("padding").
+// Hash-based Owen-scrambled Sobol' points (Burley 2020, "Practical Hash-based Owen Scrambling",
+// JCGT 9(4)): every number is a pure function of seed, pixel, sample and dimension. Dimensions come
+// in pairs; each pair is the (0,2)-sequence of Sobol's first two dimensions, its order shuffled and
+// its digits scrambled by hashes of its own ("padding").
 #pragma once
 
 #include "tracer/kernels/math.h"
@@ -33,8 +34,8 @@ DS_FN natural reverse_bits(natural x) {
   return (x >> 16) | (x << 16);
 }
 
-/// Owen scrambling of a number whose digits stand least significant first: bit k is changed by bits below k alone
-/// (Laine and Karras 2011, with the constants of Vegdahl 2021).
+/// Owen scrambling of a number whose digits stand least significant first: bit k is changed by bits
+/// below k alone (Laine and Karras 2011, with the constants of Vegdahl 2021).
 DS_FN natural scramble_reversed(natural x, natural seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -44,8 +45,9 @@ DS_FN natural scramble_reversed(natural x, natural seed) {
   return x;
 }
 
-/// Sobol's second dimension of index i, digits least significant first. Its generator matrix is Pascal's triangle mod 2,
-/// and C(k, j) is odd where the bits of j are a subset of k's (Lucas), so the product is five exclusive-or steps.
+/// Sobol's second dimension of index i, digits least significant first. Its generator matrix is
+/// Pascal's triangle mod 2, and C(k, j) is odd where the bits of j are a subset of k's (Lucas), so
+/// the product is five exclusive-or steps.
 DS_FN natural sobol_second_reversed(natural i) {
   i ^= (i >> 1) & 0x55555555u;
   i ^= (i >> 2) & 0x33333333u;
@@ -56,7 +58,9 @@ DS_FN natural sobol_second_reversed(natural i) {
 }
 
 /// The 24 leading digits as a number in [0, 1).
-DS_FN real unit_interval(natural digits) { return to_real(digits >> 8) * 5.9604644775390625e-8f; }
+DS_FN real unit_interval(natural digits) {
+  return to_real(digits >> 8) * 5.9604644775390625e-8f;
+}
 
 /// `seed_low`, `seed_high`: of the image. `pixel`: y * width + x. `sample`: from 0, below 2^32.
 DS_FN Sampler sampler_for(uint seed_low, uint seed_high, natural pixel, natural sample) {
@@ -72,7 +76,8 @@ DS_FN real2 sample_pair(Sampler s, natural pair) {
   const natural index = reverse_bits(scramble_reversed(s.reversed_index, key));
   real2 p;
   p.x = unit_interval(reverse_bits(scramble_reversed(index, key * 0x85ebca6bu + 0x27d4eb2fu)));
-  p.y = unit_interval(reverse_bits(scramble_reversed(sobol_second_reversed(index), key * 0xc2b2ae35u + 0x165667b1u)));
+  p.y = unit_interval(reverse_bits(
+      scramble_reversed(sobol_second_reversed(index), key * 0xc2b2ae35u + 0x165667b1u)));
   return p;
 }
 
@@ -83,7 +88,8 @@ DS_FN real2 concentric_disc(real2 u) {
   const mask wide = a * a > b * b;
   const real radius = choose(wide, a, b);
   const real other = choose(wide, b, a);
-  const real ratio = choose(radius == 0.0f, (real)(0.0f), other / choose(radius == 0.0f, (real)(1.0f), radius));
+  const real ratio =
+      choose(radius == 0.0f, (real)(0.0f), other / choose(radius == 0.0f, (real)(1.0f), radius));
   const real turns = ratio * 0.125f;
   real2 p;
   // Along x: angle ratio pi/4 from the x axis; along y: the same from the y axis.

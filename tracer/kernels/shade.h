@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a surface point to its material's answers. DS_MATERIALS(X) and DS_LIGHTS(X) are the scene's own lists, X(name,
-// number); what a scene does not use is not in its program (device/program_text.cc writes the lists).
+// From a surface point to its material's answers. DS_MATERIALS(X) and DS_LIGHTS(X) are the scene's
+// own lists, X(name, number); what a scene does not use is not in its program
+// (device/program_text.cc writes the lists).
 #pragma once
 
 #include "tracer/kernels/bsdf.h"
@@ -21,8 +22,10 @@ typedef struct {
   real inputs[DS_MATERIAL_INPUTS];
 } MaterialPoint;
 
-/// Fills the inputs from the materials' rows, then runs the programs of textured ones, each once for its lanes.
-DS_FN void read_material(MaterialTables t, natural material, mask active, const Surface* s, MaterialPoint* m) {
+/// Fills the inputs from the materials' rows, then runs the programs of textured ones, each once
+/// for its lanes.
+DS_FN void read_material(MaterialTables t, natural material, mask active, const Surface* s,
+                         MaterialPoint* m) {
   const natural row = material * t.material_words;
   m->type = load_natural(t.materials, row + (uint)k_material_type);
   for (int i = 0; i < DS_MATERIAL_INPUTS; ++i) {
@@ -45,10 +48,11 @@ DS_FN void read_material(MaterialTables t, natural material, mask active, const 
 }
 
 #ifdef DS_MIX_NUMBER
-/// Replaces every mix by one of its materials, the second with probability `amount`. `*choice` in [0, 1) is used up
-/// and stretched back to [0, 1), so that nested mixes and the lobe choice after them need no further number.
-DS_FN natural resolve_mix(MaterialTables t, natural material, mask active, const Surface* s, real* choice,
-                          MaterialPoint* m) {
+/// Replaces every mix by one of its materials, the second with probability `amount`. `*choice` in
+/// [0, 1) is used up and stretched back to [0, 1), so that nested mixes and the lobe choice after
+/// them need no further number.
+DS_FN natural resolve_mix(MaterialTables t, natural material, mask active, const Surface* s,
+                          real* choice, MaterialPoint* m) {
   read_material(t, material, active, s, m);
   mask mixes = active & (m->type == (uint)DS_MIX_NUMBER);
   while (any_lane(mixes)) {
@@ -56,8 +60,11 @@ DS_FN natural resolve_mix(MaterialTables t, natural material, mask active, const
     const mask second = *choice < amount;
     const real low = choose(second, (real)(0.0f), amount);
     const real width = choose(second, amount, 1.0f - amount);
-    *choice = choose(mixes, lesser((*choice - low) / greater(width, (real)(1e-10f)), (real)(0.99999994f)), *choice);
-    const natural child = material * t.material_words + (uint)k_material_child + choose_natural(second, (natural)(1u), (natural)(0u));
+    *choice =
+        choose(mixes, lesser((*choice - low) / greater(width, (real)(1e-10f)), (real)(0.99999994f)),
+               *choice);
+    const natural child = material * t.material_words + (uint)k_material_child +
+                          choose_natural(second, (natural)(1u), (natural)(0u));
     material = choose_natural(mixes, load_natural(t.materials, child), material);
     read_material(t, material, active, s, m);
     mixes = active & (m->type == (uint)DS_MIX_NUMBER);
@@ -69,14 +76,14 @@ DS_FN natural resolve_mix(MaterialTables t, natural material, mask active, const
 /// Value and pdf of the materials at `wi` (local).
 DS_FN BsdfValue evaluate_material(const MaterialPoint* m, Viewer viewer, real3 wi) {
   BsdfValue result = no_value();
-#define DS_EVALUATE(name, number)                                       \
-  {                                                                     \
-    const mask here = m->type == (uint)number;                          \
-    if (any_lane(here)) {                                               \
-      const BsdfValue v = name##_evaluate(m->inputs, viewer, wi);       \
-      result.value = choose(here, v.value, result.value);               \
-      result.pdf = choose(here, v.pdf, result.pdf);                     \
-    }                                                                   \
+#define DS_EVALUATE(name, number)                                 \
+  {                                                               \
+    const mask here = m->type == (uint)number;                    \
+    if (any_lane(here)) {                                         \
+      const BsdfValue v = name##_evaluate(m->inputs, viewer, wi); \
+      result.value = choose(here, v.value, result.value);         \
+      result.pdf = choose(here, v.pdf, result.pdf);               \
+    }                                                             \
   }
   DS_MATERIALS(DS_EVALUATE)
   return result;
@@ -96,20 +103,22 @@ DS_FN BsdfSample choose(mask m, BsdfSample a, BsdfSample b) {
 
 DS_FN BsdfSample sample_material(const MaterialPoint* m, Viewer viewer, real2 u, real2 lobe) {
   BsdfSample result = no_sample();
-#define DS_SAMPLE(name, number)                                                     \
-  {                                                                                 \
-    const mask here = m->type == (uint)number;                                      \
-    if (any_lane(here)) {                                                           \
-      result = choose(here, name##_sample(m->inputs, viewer, u, lobe), result);     \
-    }                                                                               \
+#define DS_SAMPLE(name, number)                                                 \
+  {                                                                             \
+    const mask here = m->type == (uint)number;                                  \
+    if (any_lane(here)) {                                                       \
+      result = choose(here, name##_sample(m->inputs, viewer, u, lobe), result); \
+    }                                                                           \
   }
   DS_MATERIALS(DS_SAMPLE)
   return result;
 }
 
-/// A light chosen by its selection probability and a way to it. `choice` in [0, 1). The pdf includes the choice.
-DS_FN LightSample sample_light(LightTables t, uint light_table, uint light_count, mask active, real3 from, real choice,
-                               real2 u) {
+#ifdef DS_LIGHTS_SAMPLED
+/// A light chosen by its selection probability and a way to it. `choice` in [0, 1). The pdf
+/// includes the choice.
+DS_FN LightSample sample_light(LightTables t, uint light_table, uint light_count, mask active,
+                               real3 from, real choice, real2 u) {
   LightSample result = no_light();
   real low = (real)(0.0f);
   for (uint i = 0; i < light_count; ++i) {
@@ -120,26 +129,31 @@ DS_FN LightSample sample_light(LightTables t, uint light_table, uint light_count
     if (!any_lane(here)) continue;
     const uint at = i * k_light_words + k_light_parameters;
     const uint kind = as_uint(t.lights[i * k_light_words + k_light_kind]);
-#define DS_SAMPLE_LIGHT(name, number)                                  \
-  if (kind == number) {                                                \
-    LightSample s = name##_sample(t, at, from, u);                     \
-    s.pdf = s.pdf * probability;                                       \
-    result = choose(here, s, result);                                  \
+#define DS_SAMPLE_LIGHT(name, number)              \
+  if (kind == number) {                            \
+    LightSample s = name##_sample(t, at, from, u); \
+    s.pdf = s.pdf * probability;                   \
+    result = choose(here, s, result);              \
   }
     DS_LIGHTS(DS_SAMPLE_LIGHT)
   }
   return result;
 }
+#endif
 
-/// Weight of strategy a against b (Veach 1997, eq. 9.23, power 2), as a quotient so that no pdf overflows.
+/// Weight of strategy a against b (Veach 1997, eq. 9.23, power 2), as a quotient so that no pdf
+/// overflows.
 DS_FN real power_heuristic(real a, real b) {
   const real ratio = b / greater(a, (real)(1e-30f));
   return 1.0f / (1.0f + ratio * ratio);
 }
 
-/// Radiance of the lights beyond the scene, weighed against having sampled them. `pdf`: of the BSDF sample that went
-/// this way; negative where no other strategy could (camera rays, specular bounces).
-DS_FN real3 escape_radiance(LightTables t, uint first, uint light_count, real3 direction, real pdf) {
+#ifdef DS_ESCAPE_LIGHTS
+/// Radiance of the lights beyond the scene, weighed against having sampled them. `pdf`: of the BSDF
+/// sample that went this way; negative where no other strategy could (camera rays, specular
+/// bounces).
+DS_FN real3 escape_radiance(LightTables t, uint first, uint light_count, real3 direction,
+                            real pdf) {
   real3 sum = splat((real)(0.0f));
   for (uint i = first; i < light_count; ++i) {
     const float probability = t.lights[i * k_light_words + k_light_probability];
@@ -150,8 +164,10 @@ DS_FN real3 escape_radiance(LightTables t, uint first, uint light_count, real3 d
 #define DS_ESCAPE(name, number) \
   if (kind == number) radiance = name##_escape(t, at, direction, &light_pdf);
     DS_ESCAPE_LIGHTS(DS_ESCAPE)
-    const real weight = choose(pdf < 0.0f, (real)(1.0f), power_heuristic(pdf, light_pdf * probability));
+    const real weight =
+        choose(pdf < 0.0f, (real)(1.0f), power_heuristic(pdf, light_pdf * probability));
     sum = add_scaled(sum, radiance, weight);
   }
   return sum;
 }
+#endif

@@ -5,27 +5,31 @@
 #include "tracer/kernels/vec.h"
 
 typedef struct {
-  real3 position;     ///< world, metres
-  real3 normal;       ///< geometric, unit, on the viewer's side
-  real3 shading;      ///< interpolated, unit, on the viewer's side, never more than 89.4 degrees from the viewer
-  real3 error;        ///< bound of the position's rounding error, by component
+  real3 position;  ///< world, metres
+  real3 normal;    ///< geometric, unit, on the viewer's side
+  real3 shading;   ///< interpolated, unit, on the viewer's side, never more than 89.4 degrees from
+                   ///< the viewer
+  real3 error;     ///< bound of the position's rounding error, by component
   real u, v;
-  mask outside;       ///< the triangle's own normal (counter-clockwise corners) is on the viewer's side
+  mask outside;  ///< the triangle's own normal (counter-clockwise corners) is on the viewer's side
 } Surface;
 
-/// A ray's origin off the surface, on the side that `direction` leaves to: far enough that no rounding puts it on the
-/// other side, near enough that nothing is seen through (Pharr, Jakob and Humphreys 2016, 3.9.5). The bound is doubled
-/// because the triangle test has its own few ulps.
+/// A ray's origin off the surface, on the side that `direction` leaves to: far enough that no
+/// rounding puts it on the other side, near enough that nothing is seen through (Pharr, Jakob and
+/// Humphreys 2016, 3.9.5). The bound is doubled because the triangle test has its own few ulps.
 DS_FN real3 offset_origin(real3 position, real3 error, real3 normal, real3 direction) {
-  const real distance = 2.0f * (absolute(normal.x) * error.x + absolute(normal.y) * error.y + absolute(normal.z) * error.z);
+  const real distance = 2.0f * (absolute(normal.x) * error.x + absolute(normal.y) * error.y +
+                                absolute(normal.z) * error.z);
   return add_scaled(position, normal, with_sign_of(distance, dot(direction, normal)));
 }
 
-/// Rounding of a point made from three corners by barycentric weights: 8 half-ulps of the coordinate's magnitude.
+/// Rounding of a point made from three corners by barycentric weights: 8 half-ulps of the
+/// coordinate's magnitude.
 #define k_position_error 4.8e-7f
 
-/// Turns a shading normal that faces away from the viewer (interpolation does that at silhouettes) just so far that it
-/// does not: cos >= 0.01 afterwards. Continuous, so no line shows where it sets in.
+/// Turns a shading normal that faces away from the viewer (interpolation does that at silhouettes)
+/// just so far that it does not: cos >= 0.01 afterwards. Continuous, so no line shows where it sets
+/// in.
 DS_FN real3 facing_normal(real3 shading, real3 wo) {
   const real cosine = dot(shading, wo);
   const real lift = greater(0.01f - cosine, (real)(0.0f));

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every texture answers. A texture NAME in textures/NAME.h has DS_NAME_INPUTS and DS_NAME_NUMBERS as materials have
-// (slots of inputs count textures, slots of numbers count floats) and
+// What every texture answers. A texture NAME in textures/NAME.h has DS_NAME_INPUTS and
+// DS_NAME_NUMBERS as materials have (slots of inputs count textures, slots of numbers count floats)
+// and
 //
 //   real3 NAME_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const real3* inputs)
 //
-// A scalar texture gives three equal components. Textures are evaluated on a stack by texture_program.h.
+// A scalar texture gives three equal components. Textures are evaluated on a stack by
+// texture_program.h.
 #pragma once
 
 #include "tracer/kernels/math.h"
@@ -15,7 +17,7 @@
 #define DS_NUMBER_INDEX(slot, default_value) slot,
 
 typedef struct {
-  real3 position;  ///< in the texture's own space (3D mappings)
-  real u, v;       ///< after the texture's mapping (2D mappings)
+  real3 position;           ///< in the texture's own space (3D mappings)
+  real u, v;                ///< after the texture's mapping (2D mappings)
   DS_GLOBAL float* tables;  ///< texels
 } TexturePoint;

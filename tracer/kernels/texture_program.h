@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// A material's textured inputs as a program for a stack machine: instructions in `programs`, one value (real3) a slot.
-// All lanes run the same instruction, so the program's words are read once for all of them. Instructions:
+// A material's textured inputs as a program for a stack machine: instructions in `programs`, one
+// value (real3) a slot. All lanes run the same instruction, so the program's words are read once
+// for all of them. Instructions:
 //
 //   op_constant  r g b               push
-//   op_store     slot width          pop into `width` components of the material's inputs from `slot` on
-//   op_end
-//   op_texture + type  transform[12] numbers...   pop its inputs (the last pushed is the last input), push its value
+//   op_store     slot width          pop into `width` components of the material's inputs from
+//   `slot` on op_end op_texture + type  transform[12] numbers...   pop its inputs (the last pushed
+//   is the last input), push its value
 //
-// word 0 is the operation, word 1 the instruction's length in words. `transform` is a 3x4 row-major world-to-texture
-// matrix, or for an image [a b c; d e f] of (s, t) = [..] (u, v, 1) in its first six words.
-// DS_TEXTURES(X) is the scene's own list: X(name, number), see device/program_text.cc.
+// word 0 is the operation, word 1 the instruction's length in words. `transform` is a 3x4 row-major
+// world-to-texture matrix, or for an image [a b c; d e f] of (s, t) = [..] (u, v, 1) in its first
+// six words. DS_TEXTURES(X) is the scene's own list: X(name, number), see device/program_text.cc.
 #pragma once
 
 #include "tracer/kernels/texture.h"
@@ -26,9 +27,13 @@ typedef struct {
 
 DS_FN TexturePoint texture_point(SurfacePoint at, DS_GLOBAL float* t, DS_GLOBAL float* tables) {
   TexturePoint p;
-  p.position = vec(fma(at.position.x, (real)(t[0]), fma(at.position.y, (real)(t[1]), fma(at.position.z, (real)(t[2]), (real)(t[3])))),
-                   fma(at.position.x, (real)(t[4]), fma(at.position.y, (real)(t[5]), fma(at.position.z, (real)(t[6]), (real)(t[7])))),
-                   fma(at.position.x, (real)(t[8]), fma(at.position.y, (real)(t[9]), fma(at.position.z, (real)(t[10]), (real)(t[11])))));
+  p.position =
+      vec(fma(at.position.x, (real)(t[0]),
+              fma(at.position.y, (real)(t[1]), fma(at.position.z, (real)(t[2]), (real)(t[3])))),
+          fma(at.position.x, (real)(t[4]),
+              fma(at.position.y, (real)(t[5]), fma(at.position.z, (real)(t[6]), (real)(t[7])))),
+          fma(at.position.x, (real)(t[8]),
+              fma(at.position.y, (real)(t[9]), fma(at.position.z, (real)(t[10]), (real)(t[11])))));
   p.u = fma(at.u, (real)(t[0]), fma(at.v, (real)(t[1]), (real)(t[2])));
   p.v = fma(at.u, (real)(t[3]), fma(at.v, (real)(t[4]), (real)(t[5])));
   p.tables = tables;
@@ -36,8 +41,8 @@ DS_FN TexturePoint texture_point(SurfacePoint at, DS_GLOBAL float* t, DS_GLOBAL 
 }
 
 /// Runs the program at `code` and stores its results into `inputs` where `here` is set.
-DS_FN void run_texture_program(DS_GLOBAL float* code, DS_GLOBAL float* tables, SurfacePoint at, mask here,
-                               real* inputs) {
+DS_FN void run_texture_program(DS_GLOBAL float* code, DS_GLOBAL float* tables, SurfacePoint at,
+                               mask here, real* inputs) {
   real3 stack[DS_TEXTURE_STACK];
   int top = 0;
   for (;; code += as_uint(code[1])) {
@@ -57,12 +62,12 @@ DS_FN void run_texture_program(DS_GLOBAL float* code, DS_GLOBAL float* tables, S
     } else {
       const TexturePoint point = texture_point(at, words, tables);
       DS_GLOBAL float* numbers = words + k_instruction_transform;
-#define DS_TEXTURE_CASE(name, number)                                    \
-  if (op == op_texture + number) {                                       \
-    top -= name##_inputs;                                                \
-    stack[top] = name##_evaluate(point, numbers, stack + top);           \
-    ++top;                                                               \
-  }
+#  define DS_TEXTURE_CASE(name, number)                          \
+    if (op == op_texture + number) {                             \
+      top -= name##_inputs;                                      \
+      stack[top] = name##_evaluate(point, numbers, stack + top); \
+      ++top;                                                     \
+    }
       DS_TEXTURES(DS_TEXTURE_CASE)
     }
   }

@@ -1,33 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-// Data that host and device share. Only 4-byte scalars: no layout can differ. Tables are arrays of 4-byte words, floats
-// or the bits of an unsigned number; the constants below are word offsets.
+// Data that host and device share. Only 4-byte scalars: no layout can differ. Tables are arrays of
+// 4-byte words, floats or the bits of an unsigned number; the constants below are word offsets.
 #pragma once
 
 #include "tracer/kernels/language.h"
 
 /// Constants of a scene. Offsets count words in the buffer named.
 typedef struct {
-  float reach;            ///< greatest |coordinate| of the scene's bounds, metres
+  float reach;  ///< greatest |coordinate| of the scene's bounds, metres
   uint light_count;
   uint first_escape_light;  ///< lights from here on are met by paths that leave the scene
-  uint light_table;       ///< offset in tables: light_count cumulative selection probabilities, the last is 1
-  uint filter_table;      ///< offset in tables: inverse cumulative pixel filter, k_filter_size + 1 values
-  uint material_words;    ///< words a row of materials takes
-  uint model_object;      ///< object id whose pixels are the mask
+  uint light_table;  ///< offset in tables: light_count cumulative selection probabilities, the last
+                     ///< is 1
+  uint filter_table;    ///< offset in tables: inverse cumulative pixel filter, k_filter_size + 1
+                        ///< values
+  uint material_words;  ///< words a row of materials takes
+  uint model_object;    ///< object id whose pixels are the mask
   uint reserved;
 } SceneData;
 
 /// Constants of a picture: the camera and the engine settings.
 typedef struct {
-  float position[3];   ///< world, metres
-  float right[3];      ///< world vector of half the image plane's width at distance 1
-  float up[3];         ///< world vector of half the image plane's height at distance 1
-  float forward[3];    ///< unit, world
-  float lens_right[3]; ///< unit right times lens radius, metres
+  float position[3];    ///< world, metres
+  float right[3];       ///< world vector of half the image plane's width at distance 1
+  float up[3];          ///< world vector of half the image plane's height at distance 1
+  float forward[3];     ///< unit, world
+  float lens_right[3];  ///< unit right times lens radius, metres
   float lens_up[3];
   float focus_distance;  ///< along forward, metres
   uint width, height;
-  uint tiles_x;        ///< tiles of 8x8 pixels in a row of tiles
+  uint tiles_x;  ///< tiles of 8x8 pixels in a row of tiles
   uint sample_begin, sample_end;
   uint seed_low, seed_high;
   uint depth_total, depth_diffuse, depth_glossy, depth_specular;
@@ -42,37 +44,39 @@ static_assert(sizeof(SceneData) == 8 * 4 && sizeof(ViewData) == 32 * 4, "no padd
 enum {
   k_filter_size = 256,  ///< intervals of the inverse cumulative filter
   k_bvh_width = 8,
-  k_bvh_stack = 192,    ///< the builder refuses a tree that could need more
+  k_bvh_stack = 192,  ///< the builder refuses a tree that could need more
 
-  // A node of the tree: eight vectors of eight floats. Bounds of child i stand in element i of x_low, x_high, ...;
-  // vector 6 holds the references: a node's index, or a leaf's with the top bit set. Absent children are inside out.
+  // A node of the tree: eight vectors of eight floats. Bounds of child i stand in element i of
+  // x_low, x_high, ...; vector 6 holds the references: a node's index, or a leaf's with the top bit
+  // set. Absent children are inside out.
   k_node_vectors = 8,
   k_node_children = 6,
-  // A leaf: corners p0.x, p0.y, p0.z, p1.x, ... p2.z of eight triangles, then their ids. Absent ones are all zero.
+  // A leaf: corners p0.x, p0.y, p0.z, p1.x, ... p2.z of eight triangles, then their ids. Absent
+  // ones are all zero.
   k_leaf_vectors = 10,
   k_leaf_ids = 9,
 
   // A triangle's row in `triangles`.
-  k_triangle_positions = 0,   ///< 9
-  k_triangle_normals = 9,     ///< 9, unit
-  k_triangle_uvs = 18,        ///< 6
-  k_triangle_material = 24,   ///< row of materials
-  k_triangle_light = 25,      ///< row of lights, or k_none
-  k_triangle_object = 26,     ///< object id
-  k_triangle_flags = 27,      ///< k_flag_*
+  k_triangle_positions = 0,  ///< 9
+  k_triangle_normals = 9,    ///< 9, unit
+  k_triangle_uvs = 18,       ///< 6
+  k_triangle_material = 24,  ///< row of materials
+  k_triangle_light = 25,     ///< row of lights, or k_none
+  k_triangle_object = 26,    ///< object id
+  k_triangle_flags = 27,     ///< k_flag_*
   k_triangle_words = 28,
   k_flag_camera_invisible = 1,
 
   // A row of materials: a head, then the inputs.
   k_material_type = 0,
-  k_material_program = 1,     ///< offset in programs of what evaluates textured inputs, or k_none
-  k_material_child = 2,       ///< 2: rows of mix's materials
-  k_material_emission = 4,    ///< 3: radiance
+  k_material_program = 1,   ///< offset in programs of what evaluates textured inputs, or k_none
+  k_material_child = 2,     ///< 2: rows of mix's materials
+  k_material_emission = 4,  ///< 3: radiance
   k_material_head = 8,
 
   // A row of lights: a head, then what the kind needs.
   k_light_kind = 0,
-  k_light_probability = 1,    ///< of being selected
+  k_light_probability = 1,  ///< of being selected
   k_light_parameters = 2,
   k_light_words = 32,
 };

@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-#include <iterator>
-#include <span>
-
 #include "tracer/base/canonical.h"
 #include "tracer/base/error.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
+
+#include <array>
+#include <iterator>
+#include <span>
 
 namespace ds {
 namespace {
 
 std::string_view word(ImageWrap wrap) {
   switch (wrap) {
-    case ImageWrap::repeat: return "repeat";
-    case ImageWrap::black: return "black";
-    case ImageWrap::white: return "white";
-    case ImageWrap::clamp: return "clamp";
+    case ImageWrap::repeat:
+      return "repeat";
+    case ImageWrap::black:
+      return "black";
+    case ImageWrap::white:
+      return "white";
+    case ImageWrap::clamp:
+      return "clamp";
   }
   return "";
 }
@@ -27,33 +31,48 @@ std::string_view word(ImageFilter filter) {
 
 std::string_view word(ImageChannel channel) {
   switch (channel) {
-    case ImageChannel::rgb: return "rgb";
-    case ImageChannel::red: return "red";
-    case ImageChannel::green: return "green";
-    case ImageChannel::blue: return "blue";
-    case ImageChannel::alpha: return "alpha";
-    case ImageChannel::mean: return "mean";
-    case ImageChannel::colored_mean: return "colored_mean";
+    case ImageChannel::rgb:
+      return "rgb";
+    case ImageChannel::red:
+      return "red";
+    case ImageChannel::green:
+      return "green";
+    case ImageChannel::blue:
+      return "blue";
+    case ImageChannel::alpha:
+      return "alpha";
+    case ImageChannel::mean:
+      return "mean";
+    case ImageChannel::colored_mean:
+      return "colored_mean";
   }
   return "";
 }
 
 std::string_view word(LightKind kind) {
   switch (kind) {
-    case LightKind::point: return "point";
-    case LightKind::spot: return "spot";
-    case LightKind::sun: return "sun";
-    case LightKind::constant_infinite: return "constantinfinite";
-    case LightKind::infinite: return "infinite";
+    case LightKind::point:
+      return "point";
+    case LightKind::spot:
+      return "spot";
+    case LightKind::sun:
+      return "sun";
+    case LightKind::constant_infinite:
+      return "constantinfinite";
+    case LightKind::infinite:
+      return "infinite";
   }
   return "";
 }
 
 std::string_view word(ToneMap::Kind kind) {
   switch (kind) {
-    case ToneMap::Kind::linear: return "linear";
-    case ToneMap::Kind::reinhard02: return "reinhard02";
-    case ToneMap::Kind::autolinear: return "autolinear";
+    case ToneMap::Kind::linear:
+      return "linear";
+    case ToneMap::Kind::reinhard02:
+      return "reinhard02";
+    case ToneMap::Kind::autolinear:
+      return "autolinear";
   }
   return "";
 }
@@ -114,6 +133,7 @@ class Writer {
   void add_image(int index) {
     if (index < 0) return;
     const Image& image = scene_.images[static_cast<std::size_t>(index)];
+    if (!image.made_from.empty()) add("image.made_from", std::string_view(image.made_from));
     add("image.content", std::string_view(image.content.hex()));
     add("image.gamma", image.gamma);
     add("image.gain", image.gain);

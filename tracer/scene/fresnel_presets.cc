@@ -15,12 +15,17 @@ struct Preset {
   ConductorIndex index;
 };
 
+// Means of the measured n and k over the bands that `spectrum_to_rgb` weighs with, each over that
+// of the spectrum 1, 380 to 780 nm; the data are those of refractiveindex.info (public domain,
+// CC0): aluminium: McPeak et al., ACS Photonics 2 (2015); amorphous carbon: Arakawa et al., J.
+// Appl. Phys. 48 (1977); copper, silver: Johnson and Christy, Phys. Rev. B 6 (1972); gold:
+// Yakubovsky et al., Opt. Express 25 (2017), 117 nm.
 constexpr Preset k_presets[] = {
-    {"aluminium", {{1.36f, 0.965f, 0.618f}, {7.57f, 6.40f, 5.30f}}},
-    {"amorphous carbon", {{2.3f, 2.25f, 2.2f}, {0.8f, 0.8f, 0.8f}}},
-    {"copper", {{0.214f, 1.13f, 1.16f}, {3.67f, 2.59f, 2.46f}}},
-    {"gold", {{0.18f, 0.51f, 1.37f}, {3.07f, 2.22f, 1.87f}}},
-    {"silver", {{0.059f, 0.054f, 0.047f}, {4.28f, 3.43f, 2.81f}}},
+    {"aluminium", {{1.146f, 0.769f, 0.450f}, {6.710f, 5.796f, 4.643f}}},
+    {"amorphous carbon", {{2.443f, 2.349f, 2.164f}, {0.737f, 0.842f, 0.897f}}},
+    {"copper", {{0.237f, 1.037f, 1.298f}, {3.244f, 2.601f, 2.353f}}},
+    {"gold", {{0.098f, 0.381f, 1.575f}, {3.625f, 2.393f, 1.787f}}},
+    {"silver", {{0.055f, 0.055f, 0.043f}, {4.293f, 3.543f, 2.534f}}},
 };
 
 }  // namespace

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/scene/properties.h"
 
+#include "tracer/base/files.h"
+
 #include <algorithm>
 #include <optional>
 #include <utility>
-
-#include "tracer/base/files.h"
 
 namespace ds {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tracer/base/error.h"
+
 #include <cstddef>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "tracer/base/error.h"
 
 namespace ds {
 
@@ -20,8 +20,9 @@ namespace ds {
 ///     values   = { value }, split at spaces and tabs; none is an error
 ///     value    = word | '"' text '"' | "'" text "'" | "{[" base64 "]}"
 ///
-/// A line may end in CR LF. Nothing escapes a quote: use the other kind. A later line of the same name
-/// replaces the earlier one's values and keeps its position. A blob is kept as the text between its brackets.
+/// A line may end in CR LF. Nothing escapes a quote: use the other kind. A later line of the same
+/// name replaces the earlier one's values and keeps its position. A blob is kept as the text
+/// between its brackets.
 struct Property {
   std::string name;
   std::vector<std::string> values;
@@ -32,7 +33,8 @@ struct Property {
 /// The properties of one file, in the order in which their names first appear.
 class PropertySet {
  public:
-  /// `file` is only for messages. Findings go to `diagnostics`; the lines they are about are left out.
+  /// `file` is only for messages. Findings go to `diagnostics`; the lines they are about are left
+  /// out.
   static PropertySet parse(std::string_view text, const std::string& file,
                            Diagnostics& diagnostics);
   /// Reads the file. Throws Error(io) where it cannot be read.
@@ -47,7 +49,8 @@ class PropertySet {
 
   /// The names that stand between `prefix.` and the next dot, each once, in order of appearance.
   std::vector<std::string> names_below(std::string_view prefix) const;
-  /// First property whose name starts with `prefix.`: where the thing `prefix` is defined. Null where there is none.
+  /// First property whose name starts with `prefix.`: where the thing `prefix` is defined. Null
+  /// where there is none.
   const Property* first_below(std::string_view prefix) const;
   std::vector<const Property*> unused() const;
 

@@ -31,7 +31,8 @@ struct Image {
   ImageWrap wrap = ImageWrap::repeat;
   ImageFilter filter = ImageFilter::linear;
   ImageChannel channel = ImageChannel::rgb;
-  Hash128 content;  ///< of the file's bytes
+  Hash128 content;  ///< of the file's bytes, or of the pixels where the reader made them
+  std::string made_from;  ///< what the reader made the pixels from, in words for `explain`; empty for a file
   int width = 0, height = 0;
   std::vector<float> rgb;  ///< width * height * 3, linear, after gamma and gain; filled by the reader for sky2 (empty file)
 };
@@ -76,7 +77,7 @@ struct Light {
   Vec3 position;        ///< point, spot
   Vec3 direction;       ///< spot: unit, the way it shines; sun: unit, towards the sun
   float cos_total = 0;  ///< spot: cosine beyond which there is no light; sun: cosine of the disc's angular radius
-  float cos_falloff = 0;  ///< spot: cosine where the falloff starts, >= cos_total
+  float cos_falloff = 0;  ///< spot: cosine where the falloff starts, > cos_total
   int image = -1;  ///< infinite: lat-long image in Scene::images (sky2 makes one of its own, with an empty file name)
   /// infinite: orthogonal 3x3, no translation; it mirrors (determinant -1) for image files. In light space the image's
   /// row 0 is at +z and its middle column at +x, columns to its left towards +y: with azimuth = atan2(y, x) and polar

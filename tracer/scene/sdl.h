@@ -1,34 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tracer/scene/scene.h"
+
 #include <filesystem>
 #include <string>
 
-#include "tracer/scene/scene.h"
-
 namespace ds {
 
-/// LuxCore SDL as files on disk. Every reader throws Error(asset) holding all findings, each "file:line: ...": a syntax
-/// error, an unknown property of a known thing, a type or property dsbuild does not support yet (said in those words),
-/// a missing file, a reference to what is not defined above, a value of the wrong count or range.
+/// LuxCore SDL as files on disk. Every reader throws Error(asset) holding all findings, each
+/// "file:line: ...": a syntax error, an unknown property of a known thing, a type or property
+/// dsbuild does not support yet (said in those words), a missing file, a reference to what is not
+/// defined above, a value of the wrong count or range.
 
-/// Reads one material file: `scene.textures.*` and `scene.materials.*`. The material the file is for is the last one
-/// defined (others are its parts). No objects, lights or camera may stand in it. Result: a Scene of images, textures and
-/// materials only, whose last material is the one wanted.
+/// Reads one material file: `scene.textures.*` and `scene.materials.*`. The material the file is
+/// for is the last one defined (others are its parts). No objects, lights or camera may stand in
+/// it. Result: a Scene of images, textures and materials only, whose last material is the one
+/// wanted.
 Scene read_material(const std::filesystem::path& file);
 
-/// Reads an environment folder: `environment.scn` (textures, materials, shapes, objects, lights) and, if there,
-/// `environment.cfg` (film.imagepipeline.*: tone map). PLY and image paths are relative to the folder.
+/// Reads an environment folder: `environment.scn` (textures, materials, shapes, objects, lights)
+/// and, if there, `environment.cfg` (film.imagepipeline.*: tone map). PLY and image paths are
+/// relative to the folder.
 Scene read_environment(const std::filesystem::path& folder);
 
-/// The environment with one more object: `mesh` in `material`'s last material, object id `k_model_object_id`.
-/// Indices of the material's scene are moved behind the environment's. The environment's own objects have other ids.
+/// The environment with one more object: `mesh` in `material`'s last material, object id
+/// `k_model_object_id`. Indices of the material's scene are moved behind the environment's. The
+/// environment's own objects have other ids.
 Scene compose(const Scene& environment, const Scene& material, Mesh mesh);
 inline constexpr std::uint32_t k_model_object_id = 1;
 
-/// Canonical texts for the render key: everything that can change a pixel, defaults filled in, floats exact, in an
-/// order that does not depend on the file's; images by content hash, meshes by geometry_hash. Names are those of the
-/// SDL ("materials.body.kd = 0x1p-1 0x1p-1 0x1p-1"). The tone map is not in it (it belongs to the files stage).
+/// Canonical texts for the render key: everything that can change a pixel, defaults filled in,
+/// floats exact, in an order that does not depend on the file's; images by content hash, meshes by
+/// geometry_hash. Names are those of the SDL ("materials.body.kd = 0x1p-1 0x1p-1 0x1p-1"). The tone
+/// map is not in it (it belongs to the files stage).
 std::string canonical_material(const Scene& material);
 std::string canonical_environment(const Scene& environment);
 std::string canonical_tone_map(const ToneMap& tone_map);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <span>
-
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/sdl_prune.h"
 #include "tracer/scene/sdl_reader.h"
+
+#include <algorithm>
+#include <span>
 
 namespace ds {
 namespace {
@@ -51,15 +51,17 @@ void report_node_property(SdlReader& reader, SdlKind kind, const Property& prope
     return;
   }
   switch (classify_leftover(kind, rest.substr(dot + 1), property)) {
-    case Leftover::no_effect: return;
+    case Leftover::no_effect:
+      return;
     case Leftover::not_supported:
       reader.diagnostics.add(property.place, "{} = {} is not supported yet", property.name,
                              fmt::join(property.values, " "));
       return;
-    case Leftover::unknown: break;
+    case Leftover::unknown:
+      break;
   }
-  const Property* type = reader.properties.find(
-      fmt::format("{}.{}.type", section_of(kind), rest.substr(0, dot)));
+  const Property* type =
+      reader.properties.find(fmt::format("{}.{}.type", section_of(kind), rest.substr(0, dot)));
   reader.diagnostics.add(property.place, "{} is unknown to a {}{}{}", property.name, word_for(kind),
                          type ? " of type " : "", type ? type->values.front() : "");
 }
@@ -128,7 +130,8 @@ Scene read_environment(const std::filesystem::path& folder) {
 
   std::error_code ignored;
   const bool has_film = std::filesystem::exists(film_file, ignored);
-  PropertySet film_properties = has_film ? PropertySet::read(film_file, diagnostics) : PropertySet{};
+  PropertySet film_properties =
+      has_film ? PropertySet::read(film_file, diagnostics) : PropertySet{};
   SdlReader film(std::move(film_properties), folder, diagnostics);
   reader.scene.tone_map = read_tone_map(film);
   constexpr SdlKind k_film[] = {SdlKind::film};

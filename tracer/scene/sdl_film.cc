@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tracer/scene/sdl_reader.h"
+
 #include <algorithm>
 #include <charconv>
-
-#include "tracer/scene/sdl_reader.h"
 
 namespace ds {
 namespace {

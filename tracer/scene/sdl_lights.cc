@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
-
 #include "tracer/scene/sdl_math.h"
 #include "tracer/scene/sdl_reader.h"
 #include "tracer/scene/sky_model.h"
 #include "tracer/scene/spectrum.h"
 #include "tracer/scene/sun_model.h"
+
+#include <cmath>
 
 namespace ds {
 namespace {
@@ -15,8 +15,9 @@ Vec3d common_factor(const SdlNode& node) {
   return node.color("gain", {1, 1, 1}) * temperature_factor(node, "temperature");
 }
 
-/// Radiant intensity that LuxCore gives a lamp: `gain_steradians` divides gain * color, and power (in watts, with an
-/// efficiency above 0, and 0 is its default) takes the place of that where it is given.
+/// Radiant intensity that LuxCore gives a lamp: `gain_steradians` divides gain * color, and power
+/// (in watts, with an efficiency above 0, and 0 is its default) takes the place of that where it is
+/// given.
 Vec3d lamp_intensity(const SdlNode& node, double gain_steradians, double power_steradians) {
   const Vec3d color = node.color("color", {1, 1, 1});
   const double power = node.number("power", 0);
@@ -62,7 +63,9 @@ void read_spot(const SdlNode& node, Light& light) {
   const double steradians = 2 * portable::k_pi * (1 - 0.5 * (cos_total + cos_falloff));
   light.color = to_float(lamp_intensity(node, 1, steradians));
   light.cos_total = static_cast<float>(cos_total);
-  light.cos_falloff = static_cast<float>(cos_falloff);
+  // A sharp edge is one unit of the last place wide: the falloff is divided by its width.
+  light.cos_falloff =
+      std::fmax(static_cast<float>(cos_falloff), std::nextafter(light.cos_total, 2.0f));
   const Mat4 m = node.matrix("transformation");
   const Vec3d position = m.point(node.vector("position", {}));
   const Vec3d target = m.point(node.vector("target", {0, 0, 1}));
@@ -99,14 +102,16 @@ void read_sun(const SdlNode& node, Light& light) {
   const double sin_radius = k_sun_sin_radius * relsize;
   light.direction = to_float(direction);
   light.cos_total = static_cast<float>(std::sqrt((1 - sin_radius) * (1 + sin_radius)));
-  // The cosine is so near 1 that its rounding changes the disc's area by up to a percent; the radiance makes up for it.
+  // The cosine is so near 1 that its rounding changes the disc's area by up to a percent; the
+  // radiance makes up for it.
   const double cosine = double{light.cos_total};
   const double rounded_area = (1 - cosine) * (1 + cosine);
   const double area_factor = k_sun_sin_radius * k_sun_sin_radius / rounded_area;
   light.color = to_float(common_factor(node) * sun_radiance(direction, turbidity) * area_factor);
 }
 
-/// The upper 3x3 must be a rotation, mirrored or not: a lat-long picture cannot be sheared or scaled.
+/// The upper 3x3 must be a rotation, mirrored or not: a lat-long picture cannot be sheared or
+/// scaled.
 Mat4 rotation_of(const SdlNode& node) {
   Mat4 m = node.matrix("transformation");
   m.m[3] = m.m[7] = m.m[11] = 0;
@@ -118,7 +123,8 @@ Mat4 rotation_of(const SdlNode& node) {
   double error = 0;
   for (std::size_t i = 0; i < 16; ++i)
     error = std::fmax(error, std::fabs(product.m[i] - Mat4{}.m[i]));
-  if (error > 1e-4) node.error("transformation", "wanted a rotation, found a matrix that scales or shears");
+  if (error > 1e-4)
+    node.error("transformation", "wanted a rotation, found a matrix that scales or shears");
   return m;
 }
 
@@ -160,12 +166,10 @@ struct LightReader {
   std::string_view type;
   void (*read)(const SdlNode&, Light&);
 };
-constexpr LightReader k_readers[] = {{"point", read_point},
-                                     {"spot", read_spot},
-                                     {"sun", read_sun},
-                                     {"sky2", read_sky},
-                                     {"infinite", read_infinite},
-                                     {"constantinfinite", read_constant_infinite}};
+constexpr LightReader k_readers[] = {
+    {"point", read_point},       {"spot", read_spot},
+    {"sun", read_sun},           {"sky2", read_sky},
+    {"infinite", read_infinite}, {"constantinfinite", read_constant_infinite}};
 
 void read_light(const SdlNode& node) {
   const std::string type = node.type("sky2");

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <array>
-
 #include "tracer/scene/fresnel_presets.h"
 #include "tracer/scene/sdl_math.h"
 #include "tracer/scene/sdl_reader.h"
+
+#include <algorithm>
+#include <array>
 
 namespace ds {
 namespace {
@@ -32,8 +32,10 @@ void finish_metal2(const SdlNode& node, Material& material) {
   if (!fresnel) return;
   const auto found = node.reader().conductors.find(*fresnel);
   if (found == node.reader().conductors.end()) {
-    node.error("fresnel", "wanted the name of a fresnelpreset, fresnelcolor or fresnelconst texture, found \"{}\"",
-               *fresnel);
+    node.error(
+        "fresnel",
+        "wanted the name of a fresnelpreset, fresnelcolor or fresnelconst texture, found \"{}\"",
+        *fresnel);
     return;
   }
   set_input(material, "n", found->second.n);
@@ -65,7 +67,8 @@ int child_index(const SdlNode& node, std::string_view property) {
     return -1;
   }
   if (reader.scene.materials[static_cast<std::size_t>(found->second)].emits)
-    node.error(property, "a mix of the material \"{}\", which emits light, is not supported yet", *name);
+    node.error(property, "a mix of the material \"{}\", which emits light, is not supported yet",
+               *name);
   return found->second;
 }
 
@@ -82,7 +85,8 @@ struct Finish {
 constexpr Finish k_finishes[] = {
     {"metal2", finish_metal2}, {"glass", finish_glass}, {"mix", finish_mix}};
 
-/// Luminance by which LuxCore divides where a light is normalised; nothing, with a finding, where it is not known.
+/// Luminance by which LuxCore divides where a light is normalised; nothing, with a finding, where
+/// it is not known.
 std::optional<double> emission_luminance(const SdlNode& node, std::string_view property,
                                          const TextureRef& emission) {
   if (emission.texture >= 0) {
@@ -95,8 +99,9 @@ std::optional<double> emission_luminance(const SdlNode& node, std::string_view p
   return std::nullopt;
 }
 
-/// LuxCore: radiance = emission * gain * temperature colour, times power * efficiency / (pi * area [* luminance]) where
-/// both are above 0, else divided by the luminance where gain.normalizebycolor says so.
+/// LuxCore: radiance = emission * gain * temperature colour, times power * efficiency / (pi * area
+/// [* luminance]) where both are above 0, else divided by the luminance where gain.normalizebycolor
+/// says so.
 void read_emission(const SdlNode& node, Material& material, int index) {
   SdlReader& reader = node.reader();
   const std::optional<TextureRef> emission = node.texture("emission", 3);
@@ -108,7 +113,8 @@ void read_emission(const SdlNode& node, Material& material, int index) {
   const double efficiency = node.number(efficiency_name, 0);
   const bool normalize = node.flag("emission.normalizebycolor", true);
   const bool normalize_gain = node.flag("emission.gain.normalizebycolor", false);
-  if (power < 0) node.error("emission.power", "wanted a number that is not negative, found {}", power);
+  if (power < 0)
+    node.error("emission.power", "wanted a number that is not negative, found {}", power);
   if (efficiency < 0)
     node.error(efficiency_name, "wanted a number that is not negative, found {}", efficiency);
   if (!emission) return;
@@ -122,7 +128,8 @@ void read_emission(const SdlNode& node, Material& material, int index) {
   }
   if (by_power) {
     if (!reader.environment)
-      node.error(cause, "needs the area of an object, and a material file has none: use emission.gain");
+      node.error(cause,
+                 "needs the area of an object, and a material file has none: use emission.gain");
     reader.power_emissions[index] = {power * efficiency / portable::k_pi, node.place(cause)};
   }
   material.emits = true;

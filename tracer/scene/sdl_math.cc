@@ -10,7 +10,8 @@ namespace ds::portable {
 namespace {
 
 constexpr double k_half_pi = 1.5707963267948966;
-// ln 2 and pi/2 in two parts: the first has enough trailing zeros for an exact product with a small integer.
+// ln 2 and pi/2 in two parts: the first has enough trailing zeros for an exact product with a small
+// integer.
 constexpr double k_ln2_high = 6.93147180369123816490e-01;
 constexpr double k_ln2_low = 1.90821492927058770002e-10;
 constexpr double k_half_pi_high = 1.57079632673412561417e+00;
@@ -44,10 +45,14 @@ double sin_turned(double x, int quarter_turns) {
   const double turns = std::floor(x / k_half_pi + 0.5);
   const double rest = (x - turns * k_half_pi_high) - turns * k_half_pi_low;
   switch ((static_cast<int>(turns) + quarter_turns) & 3) {
-    case 0: return sin_series(rest);
-    case 1: return cos_series(rest);
-    case 2: return -sin_series(rest);
-    default: return -cos_series(rest);
+    case 0:
+      return sin_series(rest);
+    case 1:
+      return cos_series(rest);
+    case 2:
+      return -sin_series(rest);
+    default:
+      return -cos_series(rest);
   }
 }
 
@@ -127,14 +132,22 @@ Mat4 inverse(const Mat4& matrix) {
   const std::array<double, 16>& m = matrix.m;
   const double d = determinant(matrix);
   Mat4 r;
-  r.m = {(m[5] * m[10] - m[6] * m[9]) / d, (m[2] * m[9] - m[1] * m[10]) / d,
-         (m[1] * m[6] - m[2] * m[5]) / d,  0,
-         (m[6] * m[8] - m[4] * m[10]) / d, (m[0] * m[10] - m[2] * m[8]) / d,
-         (m[2] * m[4] - m[0] * m[6]) / d,  0,
-         (m[4] * m[9] - m[5] * m[8]) / d,  (m[1] * m[8] - m[0] * m[9]) / d,
-         (m[0] * m[5] - m[1] * m[4]) / d,  0,
-         0,                                0,
-         0,                                1};
+  r.m = {(m[5] * m[10] - m[6] * m[9]) / d,
+         (m[2] * m[9] - m[1] * m[10]) / d,
+         (m[1] * m[6] - m[2] * m[5]) / d,
+         0,
+         (m[6] * m[8] - m[4] * m[10]) / d,
+         (m[0] * m[10] - m[2] * m[8]) / d,
+         (m[2] * m[4] - m[0] * m[6]) / d,
+         0,
+         (m[4] * m[9] - m[5] * m[8]) / d,
+         (m[1] * m[8] - m[0] * m[9]) / d,
+         (m[0] * m[5] - m[1] * m[4]) / d,
+         0,
+         0,
+         0,
+         0,
+         1};
   const Vec3d moved = r.direction({m[3], m[7], m[11]});
   r.m[3] = -moved.x;
   r.m[7] = -moved.y;

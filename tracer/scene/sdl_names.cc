@@ -9,82 +9,214 @@ namespace {
 
 using Names = std::span<const std::string_view>;
 
-constexpr std::string_view k_textures[] = {
-    "imagemap", "constfloat1", "constfloat3", "scale", "add", "subtract", "divide", "mix",
-    "checkerboard2d", "checkerboard3d", "fbm", "marble", "wrinkled", "windy", "dots", "brick",
-    "band", "uv", "bilerp", "clamp", "abs", "colordepth", "normalmap", "hitpointcolor",
-    "hitpointgrey", "hitpointalpha", "hitpointvertexaov", "hitpointtriangleaov", "blackbody",
-    "irregulardata", "lampspectrum", "fresnelapproxn", "fresnelapproxk", "fresnelcolor",
-    "fresnelconst", "fresnelpreset", "fresnelsopra", "fresnelluxpop", "fresnelcauchy",
-    "fresnelabbe", "triplanar", "hsv", "brightcontrast", "remap", "power", "lessthan",
-    "greaterthan", "dotproduct", "makefloat3", "splitfloat3", "objectid", "objectidcolor",
-    "objectidnormalized", "position", "shadingnormal", "random", "wireframe", "distort", "bombing",
-    "densitygrid", "cloud", "rounding", "modulo", "blender_blend", "blender_clouds",
-    "blender_distortednoise", "blender_magic", "blender_marble", "blender_musgrave",
-    "blender_noise", "blender_stucci", "blender_voronoi", "blender_wood"};
-constexpr std::string_view k_materials[] = {
-    "matte", "roughmatte", "mirror", "glass", "roughglass", "archglass", "mattetranslucent",
-    "roughmattetranslucent", "glossy2", "glossycoating", "glossytranslucent", "metal2", "velvet",
-    "cloth", "carpaint", "mix", "null", "twosided", "disney"};
-constexpr std::string_view k_shapes[] = {
-    "mesh", "inlinedmesh", "pointiness", "strands", "group", "subdiv", "displacement",
-    "harlequin", "simplify", "islandaov", "randomtriangleaov", "edgedetectoraov", "bevel",
-    "camerainvisible", "merge"};
+constexpr std::string_view k_textures[] = {"imagemap",
+                                           "constfloat1",
+                                           "constfloat3",
+                                           "scale",
+                                           "add",
+                                           "subtract",
+                                           "divide",
+                                           "mix",
+                                           "checkerboard2d",
+                                           "checkerboard3d",
+                                           "fbm",
+                                           "marble",
+                                           "wrinkled",
+                                           "windy",
+                                           "dots",
+                                           "brick",
+                                           "band",
+                                           "uv",
+                                           "bilerp",
+                                           "clamp",
+                                           "abs",
+                                           "colordepth",
+                                           "normalmap",
+                                           "hitpointcolor",
+                                           "hitpointgrey",
+                                           "hitpointalpha",
+                                           "hitpointvertexaov",
+                                           "hitpointtriangleaov",
+                                           "blackbody",
+                                           "irregulardata",
+                                           "lampspectrum",
+                                           "fresnelapproxn",
+                                           "fresnelapproxk",
+                                           "fresnelcolor",
+                                           "fresnelconst",
+                                           "fresnelpreset",
+                                           "fresnelsopra",
+                                           "fresnelluxpop",
+                                           "fresnelcauchy",
+                                           "fresnelabbe",
+                                           "triplanar",
+                                           "hsv",
+                                           "brightcontrast",
+                                           "remap",
+                                           "power",
+                                           "lessthan",
+                                           "greaterthan",
+                                           "dotproduct",
+                                           "makefloat3",
+                                           "splitfloat3",
+                                           "objectid",
+                                           "objectidcolor",
+                                           "objectidnormalized",
+                                           "position",
+                                           "shadingnormal",
+                                           "random",
+                                           "wireframe",
+                                           "distort",
+                                           "bombing",
+                                           "densitygrid",
+                                           "cloud",
+                                           "rounding",
+                                           "modulo",
+                                           "blender_blend",
+                                           "blender_clouds",
+                                           "blender_distortednoise",
+                                           "blender_magic",
+                                           "blender_marble",
+                                           "blender_musgrave",
+                                           "blender_noise",
+                                           "blender_stucci",
+                                           "blender_voronoi",
+                                           "blender_wood"};
+constexpr std::string_view k_materials[] = {"matte",
+                                            "roughmatte",
+                                            "mirror",
+                                            "glass",
+                                            "roughglass",
+                                            "archglass",
+                                            "mattetranslucent",
+                                            "roughmattetranslucent",
+                                            "glossy2",
+                                            "glossycoating",
+                                            "glossytranslucent",
+                                            "metal2",
+                                            "velvet",
+                                            "cloth",
+                                            "carpaint",
+                                            "mix",
+                                            "null",
+                                            "twosided",
+                                            "disney"};
+constexpr std::string_view k_shapes[] = {"mesh",
+                                         "inlinedmesh",
+                                         "pointiness",
+                                         "strands",
+                                         "group",
+                                         "subdiv",
+                                         "displacement",
+                                         "harlequin",
+                                         "simplify",
+                                         "islandaov",
+                                         "randomtriangleaov",
+                                         "edgedetectoraov",
+                                         "bevel",
+                                         "camerainvisible",
+                                         "merge"};
 constexpr std::string_view k_lights[] = {
-    "point", "mappoint", "sphere", "mapsphere", "spot", "projection", "laser", "sharpdistant",
-    "distant", "sun", "sky2", "sky", "infinite", "constantinfinite", "trianglelight"};
-constexpr std::string_view k_film[] = {
-    "TONEMAP_LINEAR", "TONEMAP_REINHARD02", "TONEMAP_AUTOLINEAR", "TONEMAP_LUXLINEAR",
-    "TONEMAP_OPENCOLORIO", "GAMMA_CORRECTION", "NOP", "PREMULTIPLY_ALPHA", "OUTPUT_SWITCHER",
-    "OBJECT_ID_MASK", "BACKGROUND_IMG", "CAMERA_RESPONSE_FUNC", "BLOOM", "VIGNETTING",
-    "COLOR_ABERRATION", "GAUSSIANFILTER_3x3", "MIST", "CONTOUR_LINES", "PATTERNS", "WHITE_BALANCE",
-    "COLOR_LUT", "BCD_DENOISER", "INTEL_OIDN", "OPTIX_DENOISER", "BAKEMAP_MARGIN"};
+    "point",      "mappoint", "sphere",       "mapsphere",        "spot",
+    "projection", "laser",    "sharpdistant", "distant",          "sun",
+    "sky2",       "sky",      "infinite",     "constantinfinite", "trianglelight"};
+constexpr std::string_view k_film[] = {"TONEMAP_LINEAR",
+                                       "TONEMAP_REINHARD02",
+                                       "TONEMAP_AUTOLINEAR",
+                                       "TONEMAP_LUXLINEAR",
+                                       "TONEMAP_OPENCOLORIO",
+                                       "GAMMA_CORRECTION",
+                                       "NOP",
+                                       "PREMULTIPLY_ALPHA",
+                                       "OUTPUT_SWITCHER",
+                                       "OBJECT_ID_MASK",
+                                       "BACKGROUND_IMG",
+                                       "CAMERA_RESPONSE_FUNC",
+                                       "BLOOM",
+                                       "VIGNETTING",
+                                       "COLOR_ABERRATION",
+                                       "GAUSSIANFILTER_3x3",
+                                       "MIST",
+                                       "CONTOUR_LINES",
+                                       "PATTERNS",
+                                       "WHITE_BALANCE",
+                                       "COLOR_LUT",
+                                       "BCD_DENOISER",
+                                       "INTEL_OIDN",
+                                       "OPTIX_DENOISER",
+                                       "BAKEMAP_MARGIN"};
 
-constexpr std::string_view k_texture_names[] = {"mapping", "randomizedtiling", "colorspace", "selectionmode"};
+constexpr std::string_view k_texture_names[] = {"mapping", "randomizedtiling", "colorspace",
+                                                "selectionmode"};
 constexpr std::string_view k_material_names[] = {
-    "transparency", "emission", "bumptex", "normaltex", "bumpsamplingdistance", "id", "visibility",
-    "shadowcatcher", "holdout", "volume", "photongi", "cauchyb", "cauchyc", "filmthickness",
-    "filmior"};
+    "transparency", "emission",   "bumptex",       "normaltex",     "bumpsamplingdistance",
+    "id",           "visibility", "shadowcatcher", "holdout",       "volume",
+    "photongi",     "cauchyb",    "cauchyc",       "filmthickness", "filmior"};
 constexpr std::string_view k_shape_names[] = {"appliedtransformation", "colors", "alphas"};
 constexpr std::string_view k_object_names[] = {"motion", "bakemap", "colors", "alphas"};
-constexpr std::string_view k_light_names[] = {
-    "volume", "mapfile", "iesfile", "iesblob", "map", "flipz", "visibility", "visibilitymap",
-    "visibilitymapcache", "distribution", "id", "importance", "theta", "fov", "radius"};
+constexpr std::string_view k_light_names[] = {"volume",
+                                              "mapfile",
+                                              "iesfile",
+                                              "iesblob",
+                                              "map",
+                                              "flipz",
+                                              "visibility",
+                                              "visibilitymap",
+                                              "visibilitymapcache",
+                                              "distribution",
+                                              "id",
+                                              "importance",
+                                              "theta",
+                                              "fov",
+                                              "radius"};
 
 Names types_of(SdlKind kind) {
   switch (kind) {
-    case SdlKind::texture: return k_textures;
-    case SdlKind::material: return k_materials;
-    case SdlKind::shape: return k_shapes;
-    case SdlKind::object: return {};
-    case SdlKind::light: return k_lights;
-    case SdlKind::film: return k_film;
+    case SdlKind::texture:
+      return k_textures;
+    case SdlKind::material:
+      return k_materials;
+    case SdlKind::shape:
+      return k_shapes;
+    case SdlKind::object:
+      return {};
+    case SdlKind::light:
+      return k_lights;
+    case SdlKind::film:
+      return k_film;
   }
   return {};
 }
 
 Names property_names_of(SdlKind kind) {
   switch (kind) {
-    case SdlKind::texture: return k_texture_names;
-    case SdlKind::material: return k_material_names;
-    case SdlKind::shape: return k_shape_names;
-    case SdlKind::object: return k_object_names;
-    case SdlKind::light: return k_light_names;
-    case SdlKind::film: return {};
+    case SdlKind::texture:
+      return k_texture_names;
+    case SdlKind::material:
+      return k_material_names;
+    case SdlKind::shape:
+      return k_shape_names;
+    case SdlKind::object:
+      return k_object_names;
+    case SdlKind::light:
+      return k_light_names;
+    case SdlKind::film:
+      return {};
   }
   return {};
 }
 
-/// A property that changes nothing while it has this value; "*": whatever its value. Covers what is below it too.
+/// A property that changes nothing while it has this value; "*": whatever its value. Covers what is
+/// below it too.
 struct NoEffect {
   SdlKind kind;
   std::string_view name;
   std::string_view value;
 };
 
-// "importance", "directlightsampling", "visibilitymapcache" and "distribution" choose how LuxCore samples, "id" of a
-// light or material which output groups it is counted in, "photongi" and "bumpsamplingdistance" act with features
-// that are refused.
+// "importance", "directlightsampling", "visibilitymapcache" and "distribution" choose how LuxCore
+// samples, "id" of a light or material which output groups it is counted in, "photongi" and
+// "bumpsamplingdistance" act with features that are refused.
 constexpr NoEffect k_no_effect[] = {
     {SdlKind::texture, "randomizedtiling.enable", "0"},
     {SdlKind::material, "transparency.shadow", "0"},
@@ -138,24 +270,36 @@ bool contains(Names names, std::string_view name) {
 
 std::string_view section_of(SdlKind kind) {
   switch (kind) {
-    case SdlKind::texture: return "scene.textures";
-    case SdlKind::material: return "scene.materials";
-    case SdlKind::shape: return "scene.shapes";
-    case SdlKind::object: return "scene.objects";
-    case SdlKind::light: return "scene.lights";
-    case SdlKind::film: return "film.imagepipeline";
+    case SdlKind::texture:
+      return "scene.textures";
+    case SdlKind::material:
+      return "scene.materials";
+    case SdlKind::shape:
+      return "scene.shapes";
+    case SdlKind::object:
+      return "scene.objects";
+    case SdlKind::light:
+      return "scene.lights";
+    case SdlKind::film:
+      return "film.imagepipeline";
   }
   return "";
 }
 
 std::string_view word_for(SdlKind kind) {
   switch (kind) {
-    case SdlKind::texture: return "texture";
-    case SdlKind::material: return "material";
-    case SdlKind::shape: return "shape";
-    case SdlKind::object: return "object";
-    case SdlKind::light: return "light";
-    case SdlKind::film: return "image pipeline step";
+    case SdlKind::texture:
+      return "texture";
+    case SdlKind::material:
+      return "material";
+    case SdlKind::shape:
+      return "shape";
+    case SdlKind::object:
+      return "object";
+    case SdlKind::light:
+      return "light";
+    case SdlKind::film:
+      return "image pipeline step";
   }
   return "";
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tracer/scene/properties.h"
+
 #include <string>
 #include <string_view>
-
-#include "tracer/scene/properties.h"
 
 namespace ds {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <cmath>
-#include <set>
-
 #include "tracer/scene/mesh.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/sdl_math.h"
 #include "tracer/scene/sdl_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
 
 namespace ds {
 namespace {
@@ -65,8 +65,8 @@ std::optional<Mesh> read_inlined(const SdlNode& node) {
   return std::nullopt;
 }
 
-/// Points by `m`, normals by its inverse transpose. A mirroring matrix turns the winding round, so that the outside
-/// stays the outside.
+/// Points by `m`, normals by its inverse transpose. A mirroring matrix turns the winding round, so
+/// that the outside stays the outside.
 void transform(Mesh& mesh, const Mat4& m) {
   if (m == Mat4{}) return;
   for (Vec3& position : mesh.positions)

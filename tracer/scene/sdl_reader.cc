@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/scene/sdl_reader.h"
 
+#include "tracer/scene/sdl_math.h"
+
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <span>
 #include <system_error>
-
-#include "tracer/scene/sdl_math.h"
 
 namespace ds {
 namespace {
@@ -28,8 +28,8 @@ std::string joined(const Property& property) {
   return fmt::format("{}", fmt::join(property.values, " "));
 }
 
-/// Takes a colour space prefix off the words and returns the exponent that makes the numbers linear; nothing for one
-/// that is not supported.
+/// Takes a colour space prefix off the words and returns the exponent that makes the numbers
+/// linear; nothing for one that is not supported.
 std::optional<double> take_color_space(std::vector<std::string>& words) {
   if (words.empty()) return 1.0;
   if (words[0] == "nop") {
@@ -55,8 +55,8 @@ std::optional<double> parse_sdl_number(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    return std::nullopt;
+  const bool is_float = std::fabs(value) <= double{std::numeric_limits<float>::max()};
+  if (error != std::errc() || end != text.data() + text.size() || !is_float) return std::nullopt;
   return value;
 }
 
@@ -254,7 +254,8 @@ std::optional<TextureRef> SdlNode::texture(std::string_view property, int width)
   }
   const std::string wrong = joined(*found);
   if (reader_->properties.first_below(fmt::format("scene.textures.{}", wrong)))
-    error(property, "texture \"{}\" cannot be used here: it is defined below its use or has an error", wrong);
+    error(property,
+          "texture \"{}\" cannot be used here: it is defined below its use or has an error", wrong);
   else
     error(property, "wanted one number, three numbers or the name of a texture, found \"{}\"",
           wrong);

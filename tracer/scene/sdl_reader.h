@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tracer/base/error.h"
+#include "tracer/scene/properties.h"
+#include "tracer/scene/scene.h"
+#include "tracer/scene/sdl_names.h"
+#include "tracer/scene/type_tables.h"
+
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -8,12 +14,6 @@
 #include <string_view>
 #include <utility>
 #include <vector>
-
-#include "tracer/base/error.h"
-#include "tracer/scene/properties.h"
-#include "tracer/scene/scene.h"
-#include "tracer/scene/sdl_names.h"
-#include "tracer/scene/type_tables.h"
 
 namespace ds {
 
@@ -39,16 +39,17 @@ struct SdlReader {
   Diagnostics& diagnostics;
   Scene scene;
 
-  std::map<std::string, TextureRef> textures;         ///< constants are folded
-  std::map<std::string, ConductorIndex> conductors;   ///< fresnel* textures
-  std::map<std::string, int> materials;               ///< index into scene.materials
+  std::map<std::string, TextureRef> textures;        ///< constants are folded
+  std::map<std::string, ConductorIndex> conductors;  ///< fresnel* textures
+  std::map<std::string, int> materials;              ///< index into scene.materials
   std::map<std::string, Mesh> shapes;
-  std::map<int, PowerEmission> power_emissions;       ///< by material
-  bool environment = false;                           ///< objects and lights may stand in the file
+  std::map<int, PowerEmission> power_emissions;  ///< by material
+  bool environment = false;                      ///< objects and lights may stand in the file
 };
 
-/// One named thing of a file ("scene.materials.body") with typed access to its properties. A getter that finds a wrong
-/// value adds a finding and returns what it returns for a missing property, so that reading goes on.
+/// One named thing of a file ("scene.materials.body") with typed access to its properties. A getter
+/// that finds a wrong value adds a finding and returns what it returns for a missing property, so
+/// that reading goes on.
 class SdlNode {
  public:
   SdlNode(SdlReader& reader, SdlKind kind, std::string name);
@@ -74,7 +75,8 @@ class SdlNode {
   Vec3d vector(std::string_view property, Vec3d default_value) const;
   /// Three numbers, not negative.
   Vec3d color(std::string_view property, Vec3d default_value) const;
-  /// 16 numbers, column by column, the last row 0 0 0 1 and the determinant not 0; identity where missing.
+  /// 16 numbers, column by column, the last row 0 0 0 1 and the determinant not 0; identity where
+  /// missing.
   Mat4 matrix(std::string_view property) const;
   std::optional<std::uint32_t> id(std::string_view property) const;
   /// An existing file, by a path relative to the reader's folder.
@@ -82,11 +84,12 @@ class SdlNode {
   /// All values as indices or floats, `multiple` of them at a time.
   std::vector<double> list(std::string_view property, std::size_t multiple) const;
 
-  /// A constant or a texture; nothing where the property is missing or wrong. A colour given for a scalar (width 1)
-  /// is taken by its luminance, as LuxCore does.
+  /// A constant or a texture; nothing where the property is missing or wrong. A colour given for a
+  /// scalar (width 1) is taken by its luminance, as LuxCore does.
   std::optional<TextureRef> texture(std::string_view property, int width) const;
   /// All inputs and numbers of a table row.
-  void read_row(const NodeType& row, std::vector<TextureRef>& inputs, std::vector<float>& values) const;
+  void read_row(const NodeType& row, std::vector<TextureRef>& inputs,
+                std::vector<float>& values) const;
 
   template <typename... Args>
   void error(std::string_view property, fmt::format_string<Args...> format, Args&&... args) const {
@@ -104,7 +107,8 @@ class SdlNode {
   std::string prefix_;
 };
 
-/// A finite number in C's spelling, whatever the locale; nothing for any other text.
+/// A number in C's spelling, whatever the locale, within the range of a float; nothing for any
+/// other text.
 std::optional<double> parse_sdl_number(std::string_view text);
 
 /// The parts of the reader, in LuxCore's order. Each reads its section of reader.properties.
@@ -116,11 +120,13 @@ void read_lights(SdlReader& reader);
 /// film.imagepipeline. Without any step: LuxCore's default, autolinear and gamma 2.2.
 ToneMap read_tone_map(SdlReader& reader);
 
-/// The image of an imagemap texture or infinite light (file, gain, gamma, wrap, filter, channel); -1 where it is wrong.
+/// The image of an imagemap texture or infinite light (file, gain, gamma, wrap, filter, channel);
+/// -1 where it is wrong.
 int read_image(const SdlNode& node, double gain);
 /// A texture that multiplies `ref` by `factor`; a constant stays one.
 TextureRef scaled(SdlReader& reader, const std::string& name, const TextureRef& ref, Vec3d factor);
-/// The radiance of a black body, LuxCore's `temperature` and `temperature.normalize`: factor on a light's colour.
+/// The radiance of a black body, LuxCore's `temperature` and `temperature.normalize`: factor on a
+/// light's colour.
 Vec3d temperature_factor(const SdlNode& node, std::string_view property);
 
 }  // namespace ds

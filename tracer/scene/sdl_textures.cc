@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <iterator>
-
 #include "tracer/base/hash.h"
 #include "tracer/scene/fresnel_presets.h"
 #include "tracer/scene/sdl_math.h"
 #include "tracer/scene/sdl_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
 
 namespace ds {
 namespace {
@@ -32,8 +32,9 @@ Vec3 constant_color(const SdlNode& node, std::string_view property, float defaul
   return {default_value, default_value, default_value};
 }
 
-/// LuxCore's fresnelcolor: both an index and an absorption from each band's kr (P. Shirley's approximations as pbrt v1
-/// has them), so that the reflectance at normal incidence is a little above kr; measured against LuxCore 2.11.
+/// LuxCore's fresnelcolor: both an index and an absorption from each band's kr (P. Shirley's
+/// approximations as pbrt v1 has them), so that the reflectance at normal incidence is a little
+/// above kr; measured against LuxCore 2.11.
 ConductorIndex fresnel_color(Vec3 kr) {
   const auto index = [](float r, float& n, float& k) {
     const double clamped = std::clamp(double{r}, 0.0, 0.999);
@@ -64,8 +65,10 @@ void read_mapping_2d(const SdlNode& node, Texture& texture) {
   if (node.number("mapping.uvindex", 0) != 0)
     node.error("mapping.uvindex", "a second set of uv coordinates is not supported yet");
   const double angle = portable::radians(node.number("mapping.rotation", 0));
-  const std::vector<double> scale = node.numbers("mapping.uvscale", 2).value_or(std::vector{1.0, 1.0});
-  const std::vector<double> delta = node.numbers("mapping.uvdelta", 2).value_or(std::vector{0.0, 0.0});
+  const std::vector<double> scale =
+      node.numbers("mapping.uvscale", 2).value_or(std::vector{1.0, 1.0});
+  const std::vector<double> delta =
+      node.numbers("mapping.uvdelta", 2).value_or(std::vector{0.0, 0.0});
   const double c = portable::cos(angle);
   const double s = portable::sin(angle);
   const double m[6] = {c * scale[0], s * scale[1], delta[0], -s * scale[0], c * scale[1], delta[1]};
@@ -73,14 +76,15 @@ void read_mapping_2d(const SdlNode& node, Texture& texture) {
                  [](double v) { return static_cast<float>(v); });
 }
 
-/// LuxCore's globalmapping3d: `transformation` is applied to the world's point as it stands (not inverted), so a scale
-/// of 4 makes a pattern four times as fine.
+/// LuxCore's globalmapping3d: `transformation` is applied to the world's point as it stands (not
+/// inverted), so a scale of 4 makes a pattern four times as fine.
 void read_mapping_3d(const SdlNode& node, Texture& texture) {
   // LuxCore's default is uvmapping3d, which takes (u, v, 0) as the point.
   const std::string type = node.text("mapping.type").value_or("uvmapping3d");
   texture.world_to_texture = node.matrix("mapping.transformation");
   if (type != "globalmapping3d")
-    node.error("mapping.type", "mapping \"{}\" is not supported yet for a 3D texture, only globalmapping3d is",
+    node.error("mapping.type",
+               "mapping \"{}\" is not supported yet for a 3D texture, only globalmapping3d is",
                type);
 }
 
@@ -146,14 +150,11 @@ constexpr Choice<ImageWrap> k_wraps[] = {{"repeat", ImageWrap::repeat},
                                          {"clamp", ImageWrap::clamp}};
 constexpr Choice<ImageFilter> k_filters[] = {{"linear", ImageFilter::linear},
                                              {"nearest", ImageFilter::nearest}};
-constexpr Choice<ImageChannel> k_channels[] = {{"default", ImageChannel::rgb},
-                                               {"rgb", ImageChannel::rgb},
-                                               {"red", ImageChannel::red},
-                                               {"green", ImageChannel::green},
-                                               {"blue", ImageChannel::blue},
-                                               {"alpha", ImageChannel::alpha},
-                                               {"mean", ImageChannel::mean},
-                                               {"colored_mean", ImageChannel::colored_mean}};
+constexpr Choice<ImageChannel> k_channels[] = {
+    {"default", ImageChannel::rgb}, {"rgb", ImageChannel::rgb},
+    {"red", ImageChannel::red},     {"green", ImageChannel::green},
+    {"blue", ImageChannel::blue},   {"alpha", ImageChannel::alpha},
+    {"mean", ImageChannel::mean},   {"colored_mean", ImageChannel::colored_mean}};
 enum class ColorSpace { luxcore, nop };
 constexpr Choice<ColorSpace> k_color_spaces[] = {{"luxcore", ColorSpace::luxcore},
                                                  {"nop", ColorSpace::nop}};
@@ -165,8 +166,9 @@ constexpr Choice<Storage> k_storages[] = {{"auto", Storage::automatic},
 
 bool is_hdr(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
   return extension == ".exr" || extension == ".hdr" || extension == ".pfm";
 }
 
@@ -175,9 +177,11 @@ float read_gamma(const SdlNode& node, const std::filesystem::path& file) {
   const double gamma = node.number("colorspace.gamma", old_name);
   if (choose(node, "colorspace", k_color_spaces) == ColorSpace::nop) return 1;
   if (!(gamma > 0)) node.error("gamma", "wanted a number above 0, found {}", gamma);
-  // LuxCore raises the linear values of an HDR file to its gamma too, which nobody wants and everybody forgets.
+  // LuxCore raises the linear values of an HDR file to its gamma too, which nobody wants and
+  // everybody forgets.
   if (is_hdr(file) && gamma != 1)
-    node.error("gamma", "wanted gamma = 1 for the HDR image {}, found {}", file.filename().string(), gamma);
+    node.error("gamma", "wanted gamma = 1 for the HDR image {}, found {}", file.filename().string(),
+               gamma);
   return static_cast<float>(gamma);
 }
 

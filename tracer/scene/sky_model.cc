@@ -1,36 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/scene/sky_model.h"
 
-#include <cmath>
-#include <cstddef>
-#include <span>
-
 #include "tracer/base/hash.h"
 #include "tracer/scene/sdl_math.h"
 #include "tracer/scene/sky_coefficients.h"
 #include "tracer/scene/sun_model.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstddef>
+#include <span>
 
 namespace ds {
 namespace {
 
 constexpr double k_horizon = 0.01;  // added to the cosine, so that the horizon is finite
 
-/// Sum of coefficients times powers of `s`, sine of the sun's elevation, and `t`, (turbidity - 2.2) / 5.
+/// Sum of coefficients times powers of `s`, sine of the sun's elevation, and `t`, (turbidity - 2.2)
+/// / 5.
 double parameter(const std::array<double, 8>& k, double s, double t) {
   return k[0] + s * (k[1] + s * (k[2] + s * k[3])) + t * (k[4] + s * (k[5] + s * k[6]) + t * k[7]);
 }
 
 double log_zenith(const std::array<double, 12>& k, double s, double t) {
   return k[0] + s * (k[1] + s * (k[2] + s * (k[3] + s * k[4]))) +
-         t * (k[5] + s * (k[6] + s * (k[7] + s * k[8]))) +
-         t * t * (k[9] + s * (k[10] + s * k[11]));
+         t * (k[5] + s * (k[6] + s * (k[7] + s * k[8]))) + t * t * (k[9] + s * (k[10] + s * k[11]));
 }
 
 double clamped(double x, double low, double high) {
   return x < low ? low : x > high ? high : x;
 }
 
-/// Share of the ground's radiance that a sky of the turbidity sends back from a height over the horizon.
+/// Share of the ground's radiance that a sky of the turbidity sends back from a height over the
+/// horizon.
 Vec3d backscatter(double cos_theta, double turbidity) {
   const double x = 1 - cos_theta;
   const double x4 = x * x * x * x;
@@ -65,11 +68,11 @@ SkyModel::SkyModel(const SkySettings& settings) : settings_(settings) {
         1 + band.c * portable::exp(band.d * portable::acos(s)) + band.e * s * s;
     band.scale = portable::exp(log_zenith(k.log_zenith, s, t)) / (zenith_gradation * indicatrix);
   }
-  const Vec3d sun = sun_radiance(settings.sun_direction, settings.turbidity) *
-                    (portable::k_pi * k_sun_sin_radius * k_sun_sin_radius * settings.sun_direction.z);
+  const Vec3d sun =
+      sun_radiance(settings.sun_direction, settings.turbidity) *
+      (portable::k_pi * k_sun_sin_radius * k_sun_sin_radius * settings.sun_direction.z);
   from_ground_ = settings.ground_albedo * (sun + irradiance_of_clear_sky()) * (1 / portable::k_pi);
-  const double brightness =
-      settings.ground_autoscale ? portable::luminance(sky({0, 0, 1})) : 1;
+  const double brightness = settings.ground_autoscale ? portable::luminance(sky({0, 0, 1})) : 1;
   ground_ = settings.ground_color * brightness;
 }
 
@@ -110,10 +113,25 @@ Vec3d SkyModel::radiance(Vec3d direction) const {
   return settings_.ground_enable ? ground_ : sky(at_horizon(direction));
 }
 
+namespace {
+
+std::string described(const SkySettings& s) {
+  const auto words = [](Vec3d v) { return fmt::format("{} {} {}", v.x, v.y, v.z); };
+  std::string text = fmt::format("sky2 dir {} turbidity {} groundalbedo {}", words(s.sun_direction),
+                                 s.turbidity, words(s.ground_albedo));
+  if (s.ground_enable)
+    text += fmt::format(" ground.autoscale {} ground.color {}", s.ground_autoscale,
+                        words(s.ground_color));
+  return text;
+}
+
+}  // namespace
+
 Image make_sky_image(const SkySettings& settings, int width, int height) {
   const SkyModel sky(settings);
   Image image;
   image.gamma = 1;
+  image.made_from = described(settings);
   image.width = width;
   image.height = height;
   image.rgb.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);

@@ -53,7 +53,8 @@ double black_body_radiance(double wavelength_nm, double kelvin) {
 }
 
 Vec3d black_body_color(double kelvin, bool normalize) {
-  // LuxCore's scale, measured on point lights at 3000, 6500 and 10000 K (LuxCore 2.11): the mean agrees within 2 %.
+  // LuxCore's scale, measured on point lights at 3000, 6500 and 10000 K (LuxCore 2.11): the mean
+  // agrees within 2 %.
   constexpr double k_normalized_scale = 0.817;
   constexpr double k_absolute_scale = 0.817 * 89160;
   constexpr double k_first = 380;

@@ -7,9 +7,10 @@
 namespace ds {
 namespace {
 
-/// Share of the light that a clear atmosphere lets through: Rayleigh scattering, Angstrom's turbidity formula and
-/// ozone as Preetham, Shirley and Smits, "A Practical Analytic Model for Daylight" (SIGGRAPH 1999), appendix A.1,
-/// give them (after Iqbal 1983). Water vapour and mixed gases absorb outside the range that counts for colour.
+/// Share of the light that a clear atmosphere lets through: Rayleigh scattering, Angstrom's
+/// turbidity formula and ozone as Preetham, Shirley and Smits, "A Practical Analytic Model for
+/// Daylight" (SIGGRAPH 1999), appendix A.1, give them (after Iqbal 1983). Water vapour and mixed
+/// gases absorb outside the range that counts for colour.
 double transmittance(double nm, double mass, double turbidity) {
   const double um = nm * 1e-3;
   const double beta = 0.04608365822050 * turbidity - 0.04586025928522;
@@ -34,9 +35,10 @@ double air_mass(double sin_elevation) {
 
 Vec3d sun_radiance(Vec3d direction, double turbidity) {
   const double mass = air_mass(direction.z > 1 ? 1 : direction.z);
-  // The sun above the atmosphere as a black body of its effective temperature, 683 lm/W, integral of the luminosity
-  // function 106.9 nm. The last factors take the black body's colour to that of LuxCore's solar spectrum, fitted at
-  // turbidity 2.2 and elevation 45 degrees (LuxCore 2.11); elsewhere they hold within 3 % above 15 degrees.
+  // The sun above the atmosphere as a black body of its effective temperature, 683 lm/W, integral
+  // of the luminosity function 106.9 nm. The last factors take the black body's colour to that of
+  // LuxCore's solar spectrum, fitted at turbidity 2.2 and elevation 45 degrees (LuxCore 2.11);
+  // elsewhere they hold within 3 % above 15 degrees.
   constexpr double k_photometric = 683.0 * 106.9;
   constexpr Vec3d k_solar_tint{0.9763, 1.0059, 1.1361};
   const Vec3d rgb = spectrum_to_rgb([&](double nm) {

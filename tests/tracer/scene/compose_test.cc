@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
 #include "tests/tracer/scene/sdl_files_for_tests.h"
 #include "tracer/scene/type_tables.h"
+
+#include <gtest/gtest.h>
 
 namespace ds {
 namespace {
@@ -97,8 +97,7 @@ TEST(Compose, TheEnvironmentKeepsItsIndicesAndOtherIds) {
     EXPECT_EQ(scene.objects[i].material, environment.objects[i].material);
     EXPECT_NE(scene.objects[i].id, k_model_object_id);
   }
-  EXPECT_EQ(canonical_environment(environment),
-            canonical_environment(environment_of(folder)));
+  EXPECT_EQ(canonical_environment(environment), canonical_environment(environment_of(folder)));
 }
 
 }  // namespace

@@ -31,8 +31,7 @@ INSTANTIATE_TEST_SUITE_P(
     Lines, PropertySyntax,
     ::testing::Values(Line{"a.b = \"x y\" z", "a.b", {"x y", "z"}},
                       Line{"a.e = v = w", "a.e", {"v", "=", "w"}},
-                      Line{"  a.f = 1\r", "a.f", {"1"}},
-                      Line{"a.g = {[QUJD]}", "a.g", {"QUJD"}},
+                      Line{"  a.f = 1\r", "a.f", {"1"}}, Line{"a.g = {[QUJD]}", "a.g", {"QUJD"}},
                       Line{"a.h = 1 # not a comment", "a.h", {"1", "#", "not", "a", "comment"}},
                       Line{"a.i = foo\"bar baz\"", "a.i", {"foo\"bar", "baz\""}},
                       Line{"a.j\t=\t1\t2", "a.j", {"1", "2"}},
@@ -65,17 +64,19 @@ TEST(Properties, EverySyntaxErrorIsReportedWithItsLine) {
   Diagnostics diagnostics(ErrorKind::asset);
   PropertySet::parse("noequals\na.k = \"unclosed\na.l =\n= 3\na.b = {[QUJD\nok = 1\n", "a.scn",
                      diagnostics);
-  EXPECT_THAT(diagnostics.lines(),
-              ElementsAre("a.scn:1: wanted \"name = values\", found \"noequals\"",
-                          "a.scn:2: a.k: wanted a closing quote, found the end of the line",
-                          "a.scn:3: a.l has no value",
-                          "a.scn:4: wanted a property name before \"=\", found none",
-                          "a.scn:5: a.b: wanted \"]}\" at the end of a blob, found the end of the line"));
+  EXPECT_THAT(
+      diagnostics.lines(),
+      ElementsAre("a.scn:1: wanted \"name = values\", found \"noequals\"",
+                  "a.scn:2: a.k: wanted a closing quote, found the end of the line",
+                  "a.scn:3: a.l has no value",
+                  "a.scn:4: wanted a property name before \"=\", found none",
+                  "a.scn:5: a.b: wanted \"]}\" at the end of a blob, found the end of the line"));
 }
 
 TEST(Properties, UnusedOnesAreKnown) {
   Diagnostics diagnostics(ErrorKind::asset);
-  PropertySet set = PropertySet::parse("a.b = 1\na.b.c = 2\na.bc = 3\nd = 4\n", "a.scn", diagnostics);
+  PropertySet set =
+      PropertySet::parse("a.b = 1\na.b.c = 2\na.bc = 3\nd = 4\n", "a.scn", diagnostics);
   EXPECT_NE(set.use("d"), nullptr);
   set.use_all("a.b");
   ASSERT_EQ(set.unused().size(), 1u);

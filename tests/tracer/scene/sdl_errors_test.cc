@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
 #include "tests/tracer/scene/sdl_files_for_tests.h"
+
+#include <gtest/gtest.h>
 
 namespace ds {
 namespace {
@@ -45,44 +45,55 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"scene.materials.a.type = glass\nscene.materials.a.filmthickness = 1",
              "m.scn:2: scene.materials.a.filmthickness = 1 is not supported yet"},
         Case{"scene.materials.a.kd = 1 2",
-             "m.scn:1: scene.materials.a.kd: wanted one number, three numbers or the name of a texture, found "
+             "m.scn:1: scene.materials.a.kd: wanted one number, three numbers or the name of a "
+             "texture, found "
              "\"1 2\""},
+        Case{"scene.materials.a.kd = 1e39",
+             "m.scn:1: scene.materials.a.kd: wanted one number, three numbers or the name of a "
+             "texture, found \"1e39\""},
         Case{"scene.materials.a.kd = nan",
-             "m.scn:1: scene.materials.a.kd: wanted one number, three numbers or the name of a texture, found "
+             "m.scn:1: scene.materials.a.kd: wanted one number, three numbers or the name of a "
+             "texture, found "
              "\"nan\""},
         Case{"scene.materials.a.kd = opencolorio cfg space 1 1 1",
-             "m.scn:1: scene.materials.a.kd: colour space of \"opencolorio cfg space 1 1 1\" is not supported yet"},
+             "m.scn:1: scene.materials.a.kd: colour space of \"opencolorio cfg space 1 1 1\" is "
+             "not supported yet"},
         Case{"scene.materials.a.type = glossy2\nscene.materials.a.multibounce = maybe",
              "m.scn:2: scene.materials.a.multibounce: wanted a number, found \"maybe\""},
         Case{"scene.textures.a.type = scale\nscene.textures.a.texture1 = b\n"
              "scene.textures.b.type = fbm\nscene.textures.b.mapping.type = globalmapping3d\n"
              "scene.materials.m.kd = a",
-             "m.scn:2: scene.textures.a.texture1: texture \"b\" cannot be used here: it is defined below its use or "
+             "m.scn:2: scene.textures.a.texture1: texture \"b\" cannot be used here: it is defined "
+             "below its use or "
              "has an error"},
-        Case{"scene.materials.a.type = mix\nscene.materials.a.material1 = b\nscene.materials.a.material2 = b\n"
+        Case{"scene.materials.a.type = mix\nscene.materials.a.material1 = "
+             "b\nscene.materials.a.material2 = b\n"
              "scene.materials.b.kd = 1",
              "m.scn:2: scene.materials.a.material1: material \"b\" is not defined above\n"
              "m.scn:3: scene.materials.a.material2: material \"b\" is not defined above"},
         Case{"scene.materials.b.emission = 1\nscene.materials.a.type = mix\n"
              "scene.materials.a.material1 = b\n",
-             "m.scn:3: scene.materials.a.material1: a mix of the material \"b\", which emits light, is not supported "
+             "m.scn:3: scene.materials.a.material1: a mix of the material \"b\", which emits "
+             "light, is not supported "
              "yet\nm.scn:2: scene.materials.a: material2 is missing"},
         Case{"scene.materials.a.type = metal2\nscene.materials.a.preset = mithril",
-             "m.scn:2: scene.materials.a.preset: wanted one of aluminium, amorphous carbon, copper, gold, silver, "
+             "m.scn:2: scene.materials.a.preset: wanted one of aluminium, amorphous carbon, "
+             "copper, gold, silver, "
              "found \"mithril\""},
         Case{"scene.materials.a.type = metal2\nscene.materials.a.fresnel = f",
-             "m.scn:2: scene.materials.a.fresnel: wanted the name of a fresnelpreset, fresnelcolor or fresnelconst "
+             "m.scn:2: scene.materials.a.fresnel: wanted the name of a fresnelpreset, fresnelcolor "
+             "or fresnelconst "
              "texture, found \"f\""},
         Case{"scene.materials.a.emission = 1\nscene.materials.a.emission.power = 10\n"
              "scene.materials.a.emission.efficiency = 1",
-             "m.scn:2: scene.materials.a.emission.power: needs the area of an object, and a material file has none: "
+             "m.scn:2: scene.materials.a.emission.power: needs the area of an object, and a "
+             "material file has none: "
              "use emission.gain"},
         Case{"scene.textures.t.file = no.png\nscene.materials.a.kd = t",
-             "m.scn:1: scene.textures.t.file: file no.png does not exist\n"
-             "m.scn:2: scene.materials.a.kd: texture \"t\" cannot be used here: it is defined below its use or has an "
-             "error"},
+             "m.scn:1: scene.textures.t.file: file no.png does not exist"},
         Case{"scene.textures.t.type = marble\nscene.materials.a.kd = t",
-             "m.scn:1: scene.textures.t.mapping.type: mapping \"uvmapping3d\" is not supported yet for a 3D texture, "
+             "m.scn:1: scene.textures.t.mapping.type: mapping \"uvmapping3d\" is not supported yet "
+             "for a 3D texture, "
              "only globalmapping3d is"},
         Case{"scene.objects.a.ply = a.ply\nscene.materials.a.kd = 1",
              "m.scn:1: scene.objects.a.ply does not belong in a material file"},
@@ -116,9 +127,11 @@ INSTANTIATE_TEST_SUITE_P(
              "environment.scn:2: scene.lights.l.dir: wanted a sun above the horizon, found z = "
              "-0.7071067811865475"},
         Case{"scene.lights.l.type = point\nscene.lights.l.gain = 1",
-             "environment.scn:2: scene.lights.l.gain: wanted three numbers that are not negative, found \"1\""},
+             "environment.scn:2: scene.lights.l.gain: wanted three numbers that are not negative, "
+             "found \"1\""},
         Case{"scene.lights.l.type = spot\nscene.lights.l.coneangle = 90",
-             "environment.scn:2: scene.lights.l.coneangle: wanted an angle in (0, 90) degrees, found 90"},
+             "environment.scn:2: scene.lights.l.coneangle: wanted an angle in (0, 90) degrees, "
+             "found 90"},
         Case{"scene.lights.l.type = infinite",
              "environment.scn:1: scene.lights.l: file is missing"},
         Case{"scene.shapes.s.type = strands",
@@ -130,17 +143,20 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"scene.materials.m.kd = 1\nscene.objects.o.material = m\n"
              "scene.objects.o.vertices = 0 0 0 1 0 0 0 1 0\nscene.objects.o.faces = 0 1 3",
              "environment.scn:4: scene.objects.o.faces: wanted indices below 3, found 3"},
-        Case{"scene.materials.m.kd = 1\nscene.objects.o.material = m\n"
-             "scene.objects.o.vertices = 0 0 0 1 0 0 0 1\nscene.objects.o.faces = 0 1 1",
-             "environment.scn:3: scene.objects.o.vertices: wanted a multiple of 3 numbers, found 8\n"
-             "environment.scn:4: scene.objects.o.faces: wanted indices below 0, found 0"},
+        Case{
+            "scene.materials.m.kd = 1\nscene.objects.o.material = m\n"
+            "scene.objects.o.vertices = 0 0 0 1 0 0 0 1\nscene.objects.o.faces = 0 1 1",
+            "environment.scn:3: scene.objects.o.vertices: wanted a multiple of 3 numbers, found 8\n"
+            "environment.scn:4: scene.objects.o.faces: wanted indices below 0, found 0"},
         Case{"scene.materials.m.kd = 1\nscene.objects.o.material = m\nscene.objects.o.id = 1\n"
              "scene.objects.o.vertices = 0 0 0 1 0 0 0 1 0\nscene.objects.o.faces = 0 1 2",
-             "environment.scn:3: scene.objects.o.id: 1 is the id of the dataset's model, take another"},
+             "environment.scn:3: scene.objects.o.id: 1 is the id of the dataset's model, take "
+             "another"},
         Case{"scene.materials.m.kd = 1\nscene.objects.o.material = m\n"
              "scene.objects.o.transformation = 1 0 0 5 0 1 0 0 0 0 1 0 0 0 0 1\n"
              "scene.objects.o.vertices = 0 0 0 1 0 0 0 1 0\nscene.objects.o.faces = 0 1 2",
-             "environment.scn:3: scene.objects.o.transformation: wanted an affine matrix column by column, found 5 0 "
+             "environment.scn:3: scene.objects.o.transformation: wanted an affine matrix column by "
+             "column, found 5 0 "
              "0 1 as its last row"},
         Case{"scene.materials.m.kd = 1\nscene.objects.o.material = m\n"
              "scene.objects.o.motion.0.time = 0\n"
@@ -155,34 +171,43 @@ TEST(SdlErrors, AMissingFileIsSaid) {
 
 TEST(SdlErrors, AllFindingsAreReportedTogether) {
   const SdlFolder folder;
-  EXPECT_EQ(folder.material_error("broken\nscene.materials.a.type = cloth\nscene.materials.b.kd = x\n"),
-            "m.scn:1: wanted \"name = values\", found \"broken\"\n"
-            "m.scn:2: scene.materials.a.type: material type \"cloth\" is not supported yet\n"
-            "m.scn:3: scene.materials.b.kd: wanted one number, three numbers or the name of a texture, found \"x\"");
+  EXPECT_EQ(
+      folder.material_error("broken\nscene.materials.a.type = cloth\nscene.materials.b.kd = x\n"),
+      "m.scn:1: wanted \"name = values\", found \"broken\"\n"
+      "m.scn:2: scene.materials.a.type: material type \"cloth\" is not supported yet\n"
+      "m.scn:3: scene.materials.b.kd: wanted one number, three numbers or the name of a texture, "
+      "found \"x\"");
 }
 
 TEST(SdlErrors, AnHdrImageNeedsGammaOne) {
   const SdlFolder folder;
   folder.write("sky.exr", "not read here");
-  EXPECT_EQ(folder.environment_error("scene.lights.l.type = infinite\nscene.lights.l.file = sky.exr\n"),
-            "environment.scn:1: scene.lights.l.gamma: wanted gamma = 1 for the HDR image sky.exr, found 2.2");
+  EXPECT_EQ(
+      folder.environment_error("scene.lights.l.type = infinite\nscene.lights.l.file = sky.exr\n"),
+      "environment.scn:1: scene.lights.l.gamma: wanted gamma = 1 for the HDR image sky.exr, found "
+      "2.2");
 }
 
 TEST(SdlErrors, FilmFile) {
   const SdlFolder folder;
-  folder.write("environment.cfg",
-               "film.imagepipeline.0.type = BLOOM\nfilm.imagepipeline.1.type = SEPIA\nfilm.width = 640\n"
-               "film.imagepipeline.2.type = TONEMAP_LINEAR\nfilm.imagepipeline.2.scale = 0\n"
-               "film.imagepipeline.2.gain = 1\nsampler.type = SOBOL\n");
-  EXPECT_EQ(folder.environment_error(""),
-            "environment.cfg:1: film.imagepipeline.0.type: image pipeline step type \"BLOOM\" is not supported yet\n"
-            "environment.cfg:2: film.imagepipeline.1.type: image pipeline step type \"SEPIA\" is unknown\n"
-            "environment.cfg:5: film.imagepipeline.2.scale: wanted a number above 0, found 0\n"
-            "environment.cfg:3: film.width does not belong here: only film.imagepipeline does, the rest is in the "
-            "recipe\n"
-            "environment.cfg:6: film.imagepipeline.2.gain is unknown to a image pipeline step of type "
-            "TONEMAP_LINEAR\n"
-            "environment.cfg:7: sampler.type does not belong here: the engine is in the recipe");
+  folder.write(
+      "environment.cfg",
+      "film.imagepipeline.0.type = BLOOM\nfilm.imagepipeline.1.type = SEPIA\nfilm.width = 640\n"
+      "film.imagepipeline.2.type = TONEMAP_LINEAR\nfilm.imagepipeline.2.scale = 0\n"
+      "film.imagepipeline.2.gain = 1\nsampler.type = SOBOL\n");
+  EXPECT_EQ(
+      folder.environment_error(""),
+      "environment.cfg:1: film.imagepipeline.0.type: image pipeline step type \"BLOOM\" is not "
+      "supported yet\n"
+      "environment.cfg:2: film.imagepipeline.1.type: image pipeline step type \"SEPIA\" is "
+      "unknown\n"
+      "environment.cfg:5: film.imagepipeline.2.scale: wanted a number above 0, found 0\n"
+      "environment.cfg:3: film.width does not belong here: only film.imagepipeline does, the rest "
+      "is in the "
+      "recipe\n"
+      "environment.cfg:6: film.imagepipeline.2.gain is unknown to a image pipeline step of type "
+      "TONEMAP_LINEAR\n"
+      "environment.cfg:7: sampler.type does not belong here: the engine is in the recipe");
 }
 
 }  // namespace

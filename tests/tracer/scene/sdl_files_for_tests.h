@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <string_view>
-
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
 #include "tracer/scene/sdl.h"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
 
 namespace ds::testing {
 

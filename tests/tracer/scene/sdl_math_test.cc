@@ -9,7 +9,8 @@
 namespace ds::portable {
 namespace {
 
-// libm is the independent source: it is within one unit in the last place, and so must these be, but for a few.
+// libm is the independent source: it is within one unit in the last place, and so must these be,
+// but for a few.
 constexpr double k_relative = 1e-14;
 
 TEST(PortableMath, ExpLogPow) {

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same radiance from everywhere. Never sampled (its selection probability is 0): directions chosen by the BSDF find
-// it as well as any could, and cost no shadow ray.
+// The same radiance from everywhere. Never sampled (its selection probability is 0): directions
+// chosen by the BSDF find it as well as any could, and cost no shadow ray.
 #pragma once
 
 #include "tracer/kernels/light.h"
 
 enum { constant_infinite_radiance = 0 /* 3 */ };
 
-DS_FN LightSample constant_infinite_sample(LightTables t, uint at, real3 from, real2 u) { return no_light(); }
+DS_FN LightSample constant_infinite_sample(LightTables t, uint at, real3 from, real2 u) {
+  return no_light();
+}
 
 DS_FN real3 constant_infinite_escape(LightTables t, uint at, real3 direction, real* pdf) {
   *pdf = (real)(0.0f);

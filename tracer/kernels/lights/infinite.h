@@ -1,24 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lat-long image at infinity, looked up bilinearly: round in longitude, held at the poles. Sampled in proportion to the
-// luminance of the very function looked up: its domain is cut into cells between texel centres (width columns, height + 1
-// rows, the first and last of half height), a cell's weight is the mean of its four corners times the sine of its polar
-// angle, so no direction with radiance has a pdf of 0. A cell is found by its row's cumulative table, then the column's,
-// which keeps the samples' stratification.
+// A lat-long image at infinity, looked up bilinearly: round in longitude, held at the poles.
+// Sampled in proportion to the luminance of the very function looked up: its domain is cut into
+// cells between texel centres (width columns, height + 1 rows, the first and last of half height),
+// a cell's weight is the mean of its four corners times the sine of its polar angle, so no
+// direction with radiance has a pdf of 0. A cell is found by its row's cumulative table, then the
+// column's, which keeps the samples' stratification.
 #pragma once
 
 #include "tracer/kernels/light.h"
 
 enum {
-  infinite_width = 0,       ///< texels, bits of an unsigned number
+  infinite_width = 0,  ///< texels, bits of an unsigned number
   infinite_height = 1,
-  infinite_texels = 2,      ///< offset in tables: 3 floats a texel, row 0 at the pole +z of light space
-  infinite_rows = 3,        ///< offset in tables: height + 1 cumulative row probabilities
-  infinite_columns = 4,     ///< offset in tables: for each row, width cumulative column probabilities
-  infinite_densities = 5,   ///< offset in tables: for each cell, its pdf over (azimuth, polar angle), per radian^2
-  infinite_to_light = 6,    ///< 9: rotation, row-major, world to light space
+  infinite_texels = 2,  ///< offset in tables: 3 floats a texel, row 0 at the pole +z of light space
+  infinite_rows = 3,    ///< offset in tables: height + 1 cumulative row probabilities
+  infinite_columns = 4,  ///< offset in tables: for each row, width cumulative column probabilities
+  infinite_densities =
+      5,  ///< offset in tables: for each cell, its pdf over (azimuth, polar angle), per radian^2
+  infinite_to_light = 6,  ///< 9: rotation, row-major, world to light space
 };
 
-/// A direction of light space (+z up) in the image; the middle column looks along +x, columns to its left towards +y.
+/// A direction of light space (+z up) in the image; the middle column looks along +x, columns to
+/// its left towards +y.
 typedef struct {
   real column, row;  ///< in texels, 0 at the left and top edges
   real sine;         ///< of the polar angle
@@ -41,13 +44,15 @@ DS_FN real3 lat_long_direction(real column, real row, float width, float height,
 }
 
 /// Bilinear radiance within cell (column, row) at fractions fx, fy of it.
-DS_FN real3 infinite_radiance(DS_GLOBAL float* texels, uint width, uint height, natural column, natural row, real fx,
-                              real fy) {
+DS_FN real3 infinite_radiance(DS_GLOBAL float* texels, uint width, uint height, natural column,
+                              natural row, real fx, real fy) {
   const natural left = choose_natural(column == 0u, (natural)(width - 1u), column - 1u);
   const natural above = choose_natural(row == 0u, (natural)(0u), row - 1u);
   const natural below = choose_natural(row >= height, (natural)(height - 1u), row);
-  const real3 top = lerp3(load3(texels, (above * width + left) * 3u), load3(texels, (above * width + column) * 3u), fx);
-  const real3 bottom = lerp3(load3(texels, (below * width + left) * 3u), load3(texels, (below * width + column) * 3u), fx);
+  const real3 top = lerp3(load3(texels, (above * width + left) * 3u),
+                          load3(texels, (above * width + column) * 3u), fx);
+  const real3 bottom = lerp3(load3(texels, (below * width + left) * 3u),
+                             load3(texels, (below * width + column) * 3u), fx);
   return lerp3(top, bottom, fy);
 }
 
@@ -56,7 +61,8 @@ DS_FN real3 infinite_escape(LightTables t, uint at, real3 direction, real* pdf) 
   DS_GLOBAL float* m = p + infinite_to_light;
   const uint width = as_uint(p[infinite_width]);
   const uint height = as_uint(p[infinite_height]);
-  const real3 d = vec(dot(direction, uniform3(m)), dot(direction, uniform3(m + 3)), dot(direction, uniform3(m + 6)));
+  const real3 d = vec(dot(direction, uniform3(m)), dot(direction, uniform3(m + 3)),
+                      dot(direction, uniform3(m + 6)));
   const LatLong where = lat_long_of(d, (float)width, (float)height);
   const real x = where.column + 0.5f;
   const real y = where.row + 0.5f;
@@ -65,8 +71,8 @@ DS_FN real3 infinite_escape(LightTables t, uint at, real3 direction, real* pdf) 
   const natural row = to_natural(lesser(y, (real)((float)height + 0.49f)));
   const real density = load(t.tables + as_uint(p[infinite_densities]), row * width + column);
   *pdf = density / greater(where.sine, (real)(1e-6f));
-  return infinite_radiance(t.tables + as_uint(p[infinite_texels]), width, height, column, row, x - floor(x),
-                           y - floor(y));
+  return infinite_radiance(t.tables + as_uint(p[infinite_texels]), width, height, column, row,
+                           x - floor(x), y - floor(y));
 }
 
 DS_FN LightSample infinite_sample(LightTables t, uint at, real3 from, real2 u) {
@@ -85,13 +91,16 @@ DS_FN LightSample infinite_sample(LightTables t, uint at, real3 from, real2 u) {
   const real fx = clamp01((u.x - column_low) / greater(column_share, (real)(1e-20f)));
   const real in_row = clamp01((u.y - row_low) / greater(row_share, (real)(1e-20f)));
   // The first row has its lower half only, the last its upper half.
-  const real fy = choose(row == 0u, 0.5f + 0.5f * in_row, choose(row == height, 0.5f * in_row, in_row));
+  const real fy =
+      choose(row == 0u, 0.5f + 0.5f * in_row, choose(row == height, 0.5f * in_row, in_row));
   real sine;
-  const real3 d = lat_long_direction(to_real(column) + fx - 0.5f, to_real(row) + fy - 0.5f, (float)width, (float)height,
-                                     &sine);
+  const real3 d = lat_long_direction(to_real(column) + fx - 0.5f, to_real(row) + fy - 0.5f,
+                                     (float)width, (float)height, &sine);
   LightSample s = no_light();
-  s.wi = unit(add_scaled(add_scaled(scale(uniform3(m), d.x), uniform3(m + 3), d.y), uniform3(m + 6), d.z));
-  s.radiance = infinite_radiance(t.tables + as_uint(p[infinite_texels]), width, height, column, row, fx, fy);
+  s.wi = unit(
+      add_scaled(add_scaled(scale(uniform3(m), d.x), uniform3(m + 3), d.y), uniform3(m + 6), d.z));
+  s.radiance =
+      infinite_radiance(t.tables + as_uint(p[infinite_texels]), width, height, column, row, fx, fy);
   const real density = load(t.tables + as_uint(p[infinite_densities]), row * width + column);
   s.pdf = choose(sine > 1e-6f, density / greater(sine, (real)(1e-6f)), (real)(0.0f));
   return s;

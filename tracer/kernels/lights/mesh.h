@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// An emitting mesh: the same radiance from the front of each of its triangles, sampled uniformly over their area.
+// An emitting mesh: the same radiance from the front of each of its triangles, sampled uniformly
+// over their area.
 #pragma once
 
 #include "tracer/kernels/light.h"
 
 enum {
-  mesh_radiance = 0,   ///< 3
-  mesh_area = 3,       ///< m^2, of all triangles
-  mesh_count = 4,      ///< triangles, bits of an unsigned number
-  mesh_cumulative = 5, ///< offset in tables: cumulative shares of the area
-  mesh_triangles = 6   ///< offset in tables: rows of triangles, bits of unsigned numbers
+  mesh_radiance = 0,    ///< 3
+  mesh_area = 3,        ///< m^2, of all triangles
+  mesh_count = 4,       ///< triangles, bits of an unsigned number
+  mesh_cumulative = 5,  ///< offset in tables: cumulative shares of the area
+  mesh_triangles = 6    ///< offset in tables: rows of triangles, bits of unsigned numbers
 };
 
-/// Barycentric weights of a uniform point: Heitz 2019, "A Low-Distortion Map Between Triangle and Square".
+/// Barycentric weights of a uniform point: Heitz 2019, "A Low-Distortion Map Between Triangle and
+/// Square".
 DS_FN real2 uniform_triangle(real2 u) {
   const mask lower = u.y > u.x;
   real2 b;
@@ -28,10 +30,12 @@ DS_FN LightSample mesh_sample(LightTables t, uint at, real3 from, real2 u) {
   const natural i = find_interval(cumulative, (natural)(0u), count, u.x);
   const real low = interval_start(cumulative, (natural)(0u), i);
   real2 v;
-  v.x = lesser(clamp01((u.x - low) / greater(load(cumulative, i) - low, (real)(1e-20f))), (real)(0.99999994f));
+  v.x = lesser(clamp01((u.x - low) / greater(load(cumulative, i) - low, (real)(1e-20f))),
+               (real)(0.99999994f));
   v.y = u.y;
   const real2 b = uniform_triangle(v);
-  const natural row = load_natural(t.tables + as_uint(p[mesh_triangles]), i) * (uint)k_triangle_words;
+  const natural row =
+      load_natural(t.tables + as_uint(p[mesh_triangles]), i) * (uint)k_triangle_words;
   const real3 p0 = load3(t.triangles, row);
   const real3 e1 = sub(load3(t.triangles, row + 3u), p0);
   const real3 e2 = sub(load3(t.triangles, row + 6u), p0);
@@ -45,6 +49,7 @@ DS_FN LightSample mesh_sample(LightTables t, uint at, real3 from, real2 u) {
   s.target = point;
   s.bounded = squared > 0.0f;
   s.radiance = uniform3(p + mesh_radiance);
-  s.pdf = choose(cosine > 1e-6f, squared / (greater(cosine, (real)(1e-6f)) * p[mesh_area]), (real)(0.0f));
+  s.pdf = choose(cosine > 1e-6f, squared / (greater(cosine, (real)(1e-6f)) * p[mesh_area]),
+                 (real)(0.0f));
   return s;
 }

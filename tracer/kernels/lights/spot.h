@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A point that shines into a cone: full strength within the inner angle, falling to nothing at the outer one with the
-// fourth power of the linear ramp in the cosine (as LuxCore and pbrt-v2).
+// A point that shines into a cone: full strength within the inner angle, falling to nothing at the
+// outer one with the fourth power of the linear ramp in the cosine (as LuxCore and pbrt-v2).
 #pragma once
 
 #include "tracer/kernels/lights/point.h"
@@ -15,7 +15,8 @@ DS_FN LightSample spot_sample(LightTables t, uint at, real3 from, real2 u) {
   DS_GLOBAL float* p = t.lights + at;
   LightSample s = point_sample(t, at, from, u);
   const real cosine = -dot(s.wi, uniform3(p + spot_axis));
-  const real ramp = clamp01((cosine - p[spot_cos_total]) / (p[spot_cos_falloff] - p[spot_cos_total]));
+  const real ramp =
+      clamp01((cosine - p[spot_cos_total]) / (p[spot_cos_falloff] - p[spot_cos_total]));
   s.radiance = scale(s.radiance, square(square(ramp)));
   s.pdf = choose(ramp > 0.0f, s.pdf, (real)(0.0f));
   return s;

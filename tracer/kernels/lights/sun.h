@@ -5,13 +5,14 @@
 #include "tracer/kernels/light.h"
 
 enum {
-  sun_radiance = 0,      ///< 3
-  sun_direction = 3,     ///< 3: unit, towards the sun
-  sun_tangent = 6,       ///< 3: with the next, a frame around the direction
-  sun_bitangent = 9,     ///< 3
-  sun_one_minus_cos = 12,  ///< 1 - cos of the angular radius: kept as such, a cosine near 1 has few bits of it
-  sun_sin2 = 13,         ///< squared sine of the angular radius
-  sun_pdf = 14           ///< 1 / solid angle
+  sun_radiance = 0,   ///< 3
+  sun_direction = 3,  ///< 3: unit, towards the sun
+  sun_tangent = 6,    ///< 3: with the next, a frame around the direction
+  sun_bitangent = 9,  ///< 3
+  sun_one_minus_cos =
+      12,  ///< 1 - cos of the angular radius: kept as such, a cosine near 1 has few bits of it
+  sun_sin2 = 13,  ///< squared sine of the angular radius
+  sun_pdf = 14    ///< 1 / solid angle
 };
 
 DS_FN LightSample sun_sample(LightTables t, uint at, real3 from, real2 u) {
@@ -21,8 +22,8 @@ DS_FN LightSample sun_sample(LightTables t, uint at, real3 from, real2 u) {
   const SinCos phi = sin_cos_turns(u.y);
   LightSample s = no_light();
   const real3 along = scale(uniform3(p + sun_direction), 1.0f - one_minus_cos);
-  s.wi = unit(add_scaled(add_scaled(along, uniform3(p + sun_tangent), sine * phi.cos), uniform3(p + sun_bitangent),
-                         sine * phi.sin));
+  s.wi = unit(add_scaled(add_scaled(along, uniform3(p + sun_tangent), sine * phi.cos),
+                         uniform3(p + sun_bitangent), sine * phi.sin));
   s.radiance = uniform3(p + sun_radiance);
   s.pdf = (real)(p[sun_pdf]);
   return s;

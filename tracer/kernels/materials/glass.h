@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// A smooth dielectric boundary: reflects F kr, refracts (1 - F) kt, F being Fresnel's reflectance. Radiance changes by
-// the square of the index ratio on the way through (Veach 1997, 5.2), which leaving the body undoes.
+// A smooth dielectric boundary: reflects F kr, refracts (1 - F) kt, F being Fresnel's reflectance.
+// Radiance changes by the square of the index ratio on the way through (Veach 1997, 5.2), which
+// leaving the body undoes.
 #pragma once
 
 #include "tracer/kernels/microfacet.h"
 
-#define DS_GLASS_INPUTS(INPUT)       \
-  INPUT(glass_kr, 3, 1.0f)           \
-  INPUT(glass_kt, 3, 1.0f)           \
-  INPUT(glass_interiorior, 1, 1.5f)  \
+#define DS_GLASS_INPUTS(INPUT)      \
+  INPUT(glass_kr, 3, 1.0f)          \
+  INPUT(glass_kt, 3, 1.0f)          \
+  INPUT(glass_interiorior, 1, 1.5f) \
   INPUT(glass_exteriorior, 1, 1.0f)
 #define DS_GLASS_NUMBERS(NUMBER)
 enum { DS_GLASS_INPUTS(DS_SLOT) glass_end };
 
-DS_FN BsdfValue glass_evaluate(const real* p, Viewer viewer, real3 wi) { return no_value(); }
+DS_FN BsdfValue glass_evaluate(const real* p, Viewer viewer, real3 wi) {
+  return no_value();
+}
 
 DS_FN BsdfSample glass_sample(const real* p, Viewer viewer, real2 u, real2 lobe) {
   const real3 wo = viewer.wo;

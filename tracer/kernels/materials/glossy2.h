@@ -1,24 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// A matte base kd under a rough dielectric coat of reflectance ks at normal incidence (or of refractive index `index`
-// where that is not 0), with absorption ka over depth d in the coat. On both sides.
+// A matte base kd under a rough dielectric coat of reflectance ks at normal incidence (or of
+// refractive index `index` where that is not 0), with absorption ka over depth d in the coat. On
+// both sides.
 //
 // The coat is GGX with Schlick's Fresnel. What it lets through both ways lights the base:
-//   f = D G2 F(h) / (4 cos_o cos_i) + kd / pi (1 - F(o)) (1 - F(i)) exp(-ka d (1 / cos_o + 1 / cos_i))
-// which is reciprocal and never above 1 in sum. LuxCore weighs the base by 1 - F(h) instead, which gains energy at grazing.
+//   f = D G2 F(h) / (4 cos_o cos_i) + kd / pi (1 - F(o)) (1 - F(i)) exp(-ka d (1 / cos_o + 1 /
+//   cos_i))
+// which is reciprocal and never above 1 in sum. LuxCore weighs the base by 1 - F(h) instead, which
+// gains energy at grazing.
 #pragma once
 
 #include "tracer/kernels/microfacet.h"
 
-#define DS_GLOSSY2_INPUTS(INPUT)       \
-  INPUT(glossy2_kd, 3, 0.5f)           \
-  INPUT(glossy2_ks, 3, 0.5f)           \
-  INPUT(glossy2_uroughness, 1, 0.1f)   \
-  INPUT(glossy2_vroughness, 1, 0.1f)   \
-  INPUT(glossy2_ka, 3, 0.0f)           \
-  INPUT(glossy2_d, 1, 0.0f)            \
+#define DS_GLOSSY2_INPUTS(INPUT)     \
+  INPUT(glossy2_kd, 3, 0.5f)         \
+  INPUT(glossy2_ks, 3, 0.5f)         \
+  INPUT(glossy2_uroughness, 1, 0.1f) \
+  INPUT(glossy2_vroughness, 1, 0.1f) \
+  INPUT(glossy2_ka, 3, 0.0f)         \
+  INPUT(glossy2_d, 1, 0.0f)          \
   INPUT(glossy2_index, 1, 0.0f)
-#define DS_GLOSSY2_NUMBERS(NUMBER)   \
-  NUMBER(glossy2_multibounce, 0.0f)  \
+#define DS_GLOSSY2_NUMBERS(NUMBER)  \
+  NUMBER(glossy2_multibounce, 0.0f) \
   NUMBER(glossy2_doublesided, 0.0f)
 enum { DS_GLOSSY2_INPUTS(DS_SLOT) glossy2_end };
 
@@ -28,17 +31,22 @@ DS_FN real3 glossy2_normal_reflectance(const real* p) {
   return choose(index > 0.0f, splat(r * r), input3(p, glossy2_ks));
 }
 
-DS_FN real glossy2_absorption(real absorption, real path) { return exponential(-absorption * path); }
+DS_FN real glossy2_absorption(real absorption, real path) {
+  return exponential(-absorption * path);
+}
 
 /// Base times cosine of wi.
 DS_FN real3 glossy2_base(const real* p, real3 ks, real3 wo, real3 wi) {
   const real3 one = splat((real)(1.0f));
-  const real3 passed = mul(sub(one, schlick_fresnel(ks, wo.z)), sub(one, schlick_fresnel(ks, wi.z)));
+  const real3 passed =
+      mul(sub(one, schlick_fresnel(ks, wo.z)), sub(one, schlick_fresnel(ks, wi.z)));
   const real3 base = scale(mul(input3(p, glossy2_kd), passed), wi.z * DS_INV_PI);
   if (!any_lane(p[glossy2_d] > 0.0f)) return base;
-  const real path = p[glossy2_d] * (1.0f / greater(wo.z, (real)(1e-4f)) + 1.0f / greater(wi.z, (real)(1e-4f)));
+  const real path =
+      p[glossy2_d] * (1.0f / greater(wo.z, (real)(1e-4f)) + 1.0f / greater(wi.z, (real)(1e-4f)));
   const real3 ka = input3(p, glossy2_ka);
-  return mul(base, vec(glossy2_absorption(ka.x, path), glossy2_absorption(ka.y, path), glossy2_absorption(ka.z, path)));
+  return mul(base, vec(glossy2_absorption(ka.x, path), glossy2_absorption(ka.y, path),
+                       glossy2_absorption(ka.z, path)));
 }
 
 /// Probability of sampling the coat: its share of what is reflected, as seen from wo.
@@ -46,7 +54,8 @@ DS_FN real glossy2_coat_probability(const real* p, real3 ks, real3 wo) {
   const real coat = luminance(schlick_fresnel(ks, wo.z));
   const real base = luminance(input3(p, glossy2_kd)) * (1.0f - coat);
   const real sum = coat + base;
-  return choose(sum > 0.0f, greater(coat, (real)(1e-10f)) / greater(sum, (real)(1e-10f)), (real)(0.5f));
+  return choose(sum > 0.0f, greater(coat, (real)(1e-10f)) / greater(sum, (real)(1e-10f)),
+                (real)(0.5f));
 }
 
 /// Both lobes at wi, which is above the surface.

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rough conductor: GGX microfacets with the exact Fresnel reflectance of n + ik for each of r, g, b.
+// A rough conductor: GGX microfacets with the exact Fresnel reflectance of n + ik for each of r, g,
+// b.
 #pragma once
 
 #include "tracer/kernels/microfacet.h"
 
-#define DS_METAL2_INPUTS(INPUT)       \
-  INPUT(metal2_n, 3, 0.5f)            \
-  INPUT(metal2_k, 3, 0.5f)            \
-  INPUT(metal2_uroughness, 1, 0.1f)   \
+#define DS_METAL2_INPUTS(INPUT)     \
+  INPUT(metal2_n, 3, 0.5f)          \
+  INPUT(metal2_k, 3, 0.5f)          \
+  INPUT(metal2_uroughness, 1, 0.1f) \
   INPUT(metal2_vroughness, 1, 0.1f)
 #define DS_METAL2_NUMBERS(NUMBER)
 enum { DS_METAL2_INPUTS(DS_SLOT) metal2_end };
 
 DS_FN real3 metal2_fresnel(const real* p, real cosine) {
   const real c = clamp01(cosine);
-  return vec(conductor_fresnel(p[metal2_n], p[metal2_k], c), conductor_fresnel(p[metal2_n + 1], p[metal2_k + 1], c),
+  return vec(conductor_fresnel(p[metal2_n], p[metal2_k], c),
+             conductor_fresnel(p[metal2_n + 1], p[metal2_k + 1], c),
              conductor_fresnel(p[metal2_n + 2], p[metal2_k + 2], c));
 }
 

@@ -8,7 +8,9 @@
 #define DS_MIRROR_NUMBERS(NUMBER)
 enum { DS_MIRROR_INPUTS(DS_SLOT) mirror_end };
 
-DS_FN BsdfValue mirror_evaluate(const real* p, Viewer viewer, real3 wi) { return no_value(); }
+DS_FN BsdfValue mirror_evaluate(const real* p, Viewer viewer, real3 wi) {
+  return no_value();
+}
 
 DS_FN BsdfSample mirror_sample(const real* p, Viewer viewer, real2 u, real2 lobe) {
   BsdfSample s = no_sample();

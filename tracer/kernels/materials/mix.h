@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One of two materials at random, the second with probability `amount`: a pure choice, made by resolve_mix of shade.h
-// before any BSDF is asked, so a path pays for one of them only.
+// One of two materials at random, the second with probability `amount`: a pure choice, made by
+// resolve_mix of shade.h before any BSDF is asked, so a path pays for one of them only.
 #pragma once
 
 #include "tracer/kernels/bsdf.h"

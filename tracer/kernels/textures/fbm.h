@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fractal Brownian motion, a sum of octaves of gradient noise; about [-1, 1] at roughness 0.5, mean 0.
+// Fractal Brownian motion, a sum of octaves of gradient noise; about [-1, 1] at roughness 0.5, mean
+// 0.
 #pragma once
 
 #include "tracer/kernels/noise.h"
@@ -11,5 +12,6 @@ enum { DS_FBM_NUMBERS(DS_NUMBER_INDEX) fbm_numbers };
 enum { fbm_inputs = 0 };
 
 DS_FN real3 fbm_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const real3* inputs) {
-  return splat(fractal_noise(at.position, (real)(numbers[fbm_roughness]), (int)numbers[fbm_octaves]));
+  return splat(
+      fractal_noise(at.position, (real)(numbers[fbm_roughness]), (int)numbers[fbm_octaves]));
 }

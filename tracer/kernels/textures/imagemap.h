@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An image over (u, v): u to the right, v upwards (row 0 of the texels is the top, v = 1). Texels stand in the tables,
-// linear, three floats each.
+// An image over (u, v): u to the right, v upwards (row 0 of the texels is the top, v = 1). Texels
+// stand in the tables, linear, three floats each.
 #pragma once
 
 #include "tracer/kernels/texture.h"
@@ -19,7 +19,8 @@ enum {
   imagemap_numbers
 };
 
-/// Column or row `i`, brought into [0, size) by the wrap mode; `*outside` where black or white takes its place.
+/// Column or row `i`, brought into [0, size) by the wrap mode; `*outside` where black or white
+/// takes its place.
 DS_FN natural imagemap_wrapped(integer i, uint size, uint wrap, mask* outside) {
   const integer n = (integer)((int)size);
   if (wrap == 0u) {
@@ -54,8 +55,9 @@ DS_FN real3 imagemap_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const r
   const real fy = y - 0.5f - top;
   const integer column = to_integer(left);
   const integer row = to_integer(top);
-  const real3 above = lerp3(imagemap_texel(at, numbers, column, row), imagemap_texel(at, numbers, column + 1, row), fx);
-  const real3 below =
-      lerp3(imagemap_texel(at, numbers, column, row + 1), imagemap_texel(at, numbers, column + 1, row + 1), fx);
+  const real3 above = lerp3(imagemap_texel(at, numbers, column, row),
+                            imagemap_texel(at, numbers, column + 1, row), fx);
+  const real3 below = lerp3(imagemap_texel(at, numbers, column, row + 1),
+                            imagemap_texel(at, numbers, column + 1, row + 1), fx);
   return lerp3(above, below, fy);
 }

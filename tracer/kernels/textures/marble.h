@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Marble: veins where sin(y + variation fbm) is near its turning points (after Perlin 1985). The colours are our
-// own; position, scale, octaves, roughness and variation mean what they mean in LuxCore.
+// Marble: veins where sin(y + variation fbm) is near its turning points (after Perlin 1985). The
+// colours are our own; position, scale, octaves, roughness and variation mean what they mean in
+// LuxCore.
 #pragma once
 
 #include "tracer/kernels/noise.h"
@@ -8,11 +9,13 @@
 
 #define DS_MARBLE_INPUTS(INPUT)
 #define DS_MARBLE_NUMBERS(NUMBER) \
-  NUMBER(marble_octaves, 8.0f) NUMBER(marble_roughness, 0.5f) NUMBER(marble_scale, 1.0f) NUMBER(marble_variation, 0.2f)
+  NUMBER(marble_octaves, 8.0f)    \
+  NUMBER(marble_roughness, 0.5f) NUMBER(marble_scale, 1.0f) NUMBER(marble_variation, 0.2f)
 enum { DS_MARBLE_NUMBERS(DS_NUMBER_INDEX) marble_numbers };
 enum { marble_inputs = 0 };
 
-/// The stone's colour at t in [0, 1]: pale, with a bluish vein around 0.92 and a faint grey one around 0.42.
+/// The stone's colour at t in [0, 1]: pale, with a bluish vein around 0.92 and a faint grey one
+/// around 0.42.
 DS_FN real3 marble_colour(real t) {
   const real vein = absolute(t - 0.92f) * 6.5f;
   const real faint = absolute(t - 0.42f) * 5.0f;
@@ -25,7 +28,8 @@ DS_FN real3 marble_colour(real t) {
 
 DS_FN real3 marble_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const real3* inputs) {
   const real3 p = scale(at.position, (real)(numbers[marble_scale]));
-  const real noise = fractal_noise(p, (real)(numbers[marble_roughness]), (int)numbers[marble_octaves]);
+  const real noise =
+      fractal_noise(p, (real)(numbers[marble_roughness]), (int)numbers[marble_octaves]);
   const real phase = fma((real)(numbers[marble_variation]), noise, p.y);
   return marble_colour(fma(sine(phase), (real)(0.5f), (real)(0.5f)));
 }

@@ -4,7 +4,8 @@
 
 #include "tracer/kernels/texture.h"
 
-#define DS_SUBTRACT_INPUTS(INPUT) INPUT(subtract_texture1, 3, 1.0f) INPUT(subtract_texture2, 3, 1.0f)
+#define DS_SUBTRACT_INPUTS(INPUT) \
+  INPUT(subtract_texture1, 3, 1.0f) INPUT(subtract_texture2, 3, 1.0f)
 #define DS_SUBTRACT_NUMBERS(NUMBER)
 enum { DS_SUBTRACT_INPUTS(DS_INPUT_INDEX) subtract_inputs };
 

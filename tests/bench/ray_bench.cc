@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+// Closest hits a second: tracer/kernels/rays.cl on the OpenCL device beside Embree's rtcIntersect1,
+// the same rays in the same run, turn by turn.
+//
+//   ray_bench [REPEATS [CAMERA_SIZE]]
+//
+// Prints one JSON object: per kind of ray the Mrays/s of every repeat of both, and the share of
+// rays on which both name the same triangle (they differ in ties and along edges).
+#include "tests/bench/ray_scene.h"
+#include "tracer/accel/bvh.h"
+#include "tracer/base/error.h"
+#include "tracer/device/opencl.h"
+#include "tracer/device/program_text.h"
+
+#include <embree3/rtcore.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <span>
+#include <string>
+#include <thread>
+
+#if defined(__SSE__)
+#  include <pmmintrin.h>
+#  include <xmmintrin.h>
+#endif
+
+namespace ds {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t k_local_size = 8;
+/// Each timing traces its rays this often, so that it lasts a tenth of a second and more.
+constexpr int k_rounds = 10;
+
+/// Embree's side: one rtcIntersect1 a ray, chunks dealt out to as many threads as the machine has.
+class EmbreeTracer {
+ public:
+  explicit EmbreeTracer(const std::vector<Corners>& triangles) {
+    device_ = rtcNewDevice(nullptr);
+    if (device_ == nullptr) fail(ErrorKind::device, "embree: no device could be made");
+    scene_ = rtcNewScene(device_);
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* corners = static_cast<Vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                               RTC_FORMAT_FLOAT3, sizeof(Vec3),
+                                                               triangles.size() * 3));
+    auto* indices = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                3 * sizeof(std::uint32_t), triangles.size()));
+    if (corners == nullptr || indices == nullptr)
+      fail(ErrorKind::device, "embree: no memory for {} triangles", triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k) {
+        corners[i * 3 + k] = triangles[i][k];
+        indices[i * 3 + k] = static_cast<std::uint32_t>(i * 3 + k);
+      }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene_);
+    if (rtcGetDeviceError(device_) != RTC_ERROR_NONE)
+      fail(ErrorKind::device, "embree: the scene could not be built");
+  }
+  ~EmbreeTracer() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
+  EmbreeTracer(const EmbreeTracer&) = delete;
+  EmbreeTracer& operator=(const EmbreeTracer&) = delete;
+
+  unsigned threads() const { return std::max(1u, std::thread::hardware_concurrency()); }
+
+  void trace(const std::vector<RayWords>& rays, std::vector<Met>& met) const {
+    constexpr std::size_t k_chunk = 2048;
+    std::atomic<std::size_t> next{0};
+    const auto work = [&] {
+      flush_denormals();
+      for (;;) {
+        const std::size_t begin = next.fetch_add(k_chunk);
+        if (begin >= rays.size()) return;
+        trace_chunk(rays, met, begin, std::min(rays.size(), begin + k_chunk));
+      }
+    };
+    std::vector<std::jthread> others;
+    for (unsigned i = 1; i < threads(); ++i)
+      others.emplace_back(work);
+    work();
+  }
+
+ private:
+  /// As Embree's manual asks for its full speed.
+  static void flush_denormals() {
+#if defined(__SSE__)
+    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+#endif
+  }
+
+  void trace_chunk(const std::vector<RayWords>& rays, std::vector<Met>& met, std::size_t begin,
+                   std::size_t end) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    for (std::size_t i = begin; i < end; ++i) {
+      const RayWords& r = rays[i];
+      RTCRayHit hit{};
+      hit.ray = {r[0], r[1], r[2], 0, r[3], r[4], r[5], 0, r[6], ~0u, 0, 0};
+      hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(scene_, &context, &hit);
+      met[i] = {hit.ray.tfar, hit.hit.primID, hit.hit.geomID != RTC_INVALID_GEOMETRY_ID};
+    }
+  }
+
+  RTCDevice device_ = nullptr;
+  RTCScene scene_ = nullptr;
+};
+
+/// dsbuild's side: the kernel trace_nearest over rays in device memory.
+class KernelTracer {
+ public:
+  explicit KernelTracer(const std::vector<Corners>& triangles) : device_("") {
+    const Bvh bvh = build_bvh(triangles);
+    nodes_ = device_.upload(bvh.nodes);
+    leaves_ = device_.upload(bvh.leaves);
+    reach_ = bvh.reach;
+    kernel_ =
+        device_.kernel(device_.build(rays_program_text(), k_strict_options, {}), "trace_nearest");
+  }
+
+  const DeviceInfo& info() const { return device_.info(); }
+
+  void set_rays(const std::vector<RayWords>& rays) {
+    count_ = rays.size();
+    hits_ = device_.make_buffer(count_ * 4 * sizeof(float));
+    kernel_.set(0, nodes_);
+    kernel_.set(1, leaves_);
+    kernel_.set(2, reach_);
+    kernel_.set(3, device_.upload(rays));
+    kernel_.set(4, hits_);
+  }
+  void trace() const { device_.run(kernel_, 0, count_, k_local_size); }
+
+  std::vector<Met> met() const {
+    std::vector<std::array<std::uint32_t, 4>> words(count_);
+    device_.read(hits_, std::as_writable_bytes(std::span(words)));
+    std::vector<Met> result;
+    for (const auto& w : words)
+      result.push_back({std::bit_cast<float>(w[0]), w[3], w[3] != ~0u});
+    return result;
+  }
+
+ private:
+  Device device_;
+  Buffer nodes_, leaves_, hits_;
+  float reach_ = 0;
+  Kernel kernel_;
+  std::size_t count_ = 0;
+};
+
+double mrays_per_second(std::size_t rays, const std::function<void()>& trace) {
+  const auto begin = std::chrono::steady_clock::now();
+  for (int round = 0; round < k_rounds; ++round)
+    trace();
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  return 1e-6 * k_rounds * static_cast<double>(rays) / seconds.count();
+}
+
+json compare(KernelTracer& kernel, const EmbreeTracer& embree, std::vector<RayWords> rays,
+             int repeats) {
+  rays.resize(rays.size() / k_local_size * k_local_size);
+  std::vector<Met> met(rays.size());
+  kernel.set_rays(rays);
+  kernel.trace();
+  embree.trace(rays, met);
+  const std::vector<Met> ours = kernel.met();
+  std::size_t agreed = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    agreed += ours[i].any == met[i].any && (!met[i].any || ours[i].triangle == met[i].triangle);
+
+  json dsbuild_rates = json::array(), embree_rates = json::array();
+  for (int i = 0; i < repeats; ++i) {
+    dsbuild_rates.push_back(mrays_per_second(rays.size(), [&] { kernel.trace(); }));
+    embree_rates.push_back(mrays_per_second(rays.size(), [&] { embree.trace(rays, met); }));
+  }
+  return {{"rays", rays.size()},
+          {"dsbuild", dsbuild_rates},
+          {"embree", embree_rates},
+          {"same_triangle", static_cast<double>(agreed) / static_cast<double>(rays.size())}};
+}
+
+void run(int count, char** arguments) {
+  const int repeats = count > 1 ? std::stoi(arguments[1]) : 9;
+  const int size = count > 2 ? std::stoi(arguments[2]) : 512;
+  const std::vector<Corners> triangles = ray_scene();
+  KernelTracer kernel(triangles);
+  const EmbreeTracer embree(triangles);
+
+  const std::vector<RayWords> camera = camera_rays(size);
+  std::vector<Met> met(camera.size());
+  embree.trace(camera, met);
+  const json result = {
+      {"device", kernel.info().name},
+      {"threads", embree.threads()},
+      {"compute_units", kernel.info().compute_units},
+      {"triangles", triangles.size()},
+      {"camera", compare(kernel, embree, camera, repeats)},
+      {"bounce", compare(kernel, embree, bounce_rays(triangles, camera, met), repeats)}};
+  fmt::print("{}\n", result.dump());
+}
+
+}  // namespace
+}  // namespace ds
+
+int main(int count, char** arguments) {
+  try {
+    ds::run(count, arguments);
+    return 0;
+  } catch (const ds::Error& error) {
+    fmt::print(stderr, "ray_bench: {}\n", error.what());
+    return ds::exit_code(error.kind());
+  }
+}

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/db/database.h"
+#include "builder/db/schema.h"
+#include "tracer/base/files.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace ds {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr Hash128 k_a{1, 2}, k_b{3, 4};
+
+TEST(Database, RemembersAProductAndReplacesIt) {
+  Database database({});
+  EXPECT_FALSE(database.find_product(k_a));
+  Product product{k_a, "image", k_b, 17, std::string(64, 'f'), k_a, 0.25, 3};
+  database.put_product(product, {1.5, "a device"});
+  product.object = k_a;
+  database.put_product(product, {});
+  const auto found = database.find_product(k_a);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->kind, "image");
+  EXPECT_EQ(found->object, k_a);
+  EXPECT_EQ(found->size_bytes, 17U);
+  EXPECT_EQ(found->sha256, std::string(64, 'f'));
+  EXPECT_EQ(found->pixels, k_a);
+  EXPECT_EQ(found->tone_map_scale, 0.25);
+  EXPECT_EQ(found->rejected_samples, 3U);
+}
+
+TEST(Database, KnowsAFileByEveryPartOfItsStamp) {
+  Database database({});
+  const FileStamp stamp{10, 20, 30};
+  database.put_content("/a/file", stamp, k_a);
+  EXPECT_EQ(database.find_content("/a/file", stamp), k_a);
+  EXPECT_FALSE(database.find_content("/a/other", stamp));
+  EXPECT_FALSE(database.find_content("/a/file", {11, 20, 30}));
+  EXPECT_FALSE(database.find_content("/a/file", {10, 21, 30}));
+  EXPECT_FALSE(database.find_content("/a/file", {10, 20, 31}));
+}
+
+TEST(Database, KeepsGeometryByTheVersionOfItsReader) {
+  Database database({});
+  database.put_geometry(k_a, 1, k_b);
+  EXPECT_EQ(database.find_geometry(k_a, 1), k_b);
+  EXPECT_FALSE(database.find_geometry(k_a, 2));
+}
+
+TEST(Database, KeepsDatasetsApart) {
+  Database database({});
+  PartHashes parts{};
+  parts[4] = k_b;
+  database.put_image("one", "a/0", parts);
+  database.put_placed("one", {"images/a/0.png", "a/0", "image", k_a, k_b, FileStamp{1, 2, 3}});
+  database.put_placed("one", {"images/a/0.mask.png", "a/0", "mask", k_a, k_b, std::nullopt});
+  EXPECT_TRUE(database.images("two").empty());
+  EXPECT_TRUE(database.placed_files("two").empty());
+  EXPECT_EQ(database.images("one").at("a/0"), parts);
+  const auto placed = database.placed_files("one");
+  EXPECT_EQ(placed.at("images/a/0.png").stamp, (FileStamp{1, 2, 3}));
+  EXPECT_EQ(placed.at("images/a/0.mask.png").stamp, std::nullopt);
+  database.remove_placed("one", "images/a/0.png");
+  database.remove_image("one", "a/0");
+  EXPECT_EQ(database.placed_files("one").size(), 1U);
+  EXPECT_TRUE(database.images("one").empty());
+}
+
+TEST(Database, KeepsADatasetAndItsOverrides) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "db.sqlite";
+  const DatasetRow row{"id", "name", "/r/x.toml", "/w", {"a=\"b\"", "c=[1, 2]"}, k_a};
+  {
+    Database database(file);
+    database.put_dataset(row);
+    database.set_manifest("id", k_b);
+  }
+  Database database(file);
+  const auto found = database.find_dataset("id");
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->overrides, row.overrides);
+  EXPECT_EQ(found->recipe, row.recipe);
+  EXPECT_EQ(found->working_folder, row.working_folder);
+  EXPECT_EQ(found->manifest, k_b);
+}
+
+TEST(Database, LogsBuildsNewestFirst) {
+  Database database({});
+  database.begin_build("d", "host");
+  const std::int64_t second = database.begin_build("d", "host");
+  database.begin_build("other", "host");
+  database.update_build({second, "", "", "a device", "done", 5, 3, 1, 1, 4096, 2.5});
+  const auto builds = database.builds("d");
+  ASSERT_EQ(builds.size(), 2U);
+  EXPECT_EQ(builds[0].number, second);
+  EXPECT_EQ(builds[0].outcome, "done");
+  EXPECT_EQ(builds[0].built, 3U);
+  EXPECT_EQ(builds[0].traced_samples, 4096U);
+  EXPECT_EQ(builds[0].seconds, 2.5);
+  EXPECT_EQ(builds[0].host, "host");
+  EXPECT_EQ(builds[1].outcome, "running");
+}
+
+TEST(Database, RefusesAFileOfANewerProgram) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "db.sqlite";
+  { Database database(file); }
+  { Connection(file).execute("PRAGMA user_version = 999"); }
+  try {
+    Database database(file);
+    FAIL();
+  } catch (const DamagedDatabase&) {
+    FAIL() << "a newer file is not a damaged one";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("found 999: made by a newer dsbuild"));
+  }
+}
+
+TEST(Database, TakesAnotherProgramsFileForDamaged) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "db.sqlite";
+  { Connection(file).execute("CREATE TABLE theirs (a)"); }
+  EXPECT_THROW(Database{file}, DamagedDatabase);
+}
+
+TEST(Database, FindsAPageWithOtherBytes) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "db.sqlite";
+  {
+    Database database(file);
+    for (std::uint64_t i = 0; i < 500; ++i)
+      database.put_text({i, i}, std::string(100, 'x'));
+  }
+  std::string bytes = read_text_file(file);
+  ASSERT_GT(bytes.size(), 20'000U);
+  for (std::size_t i = 12'000; i < 16'000; ++i)
+    bytes[i] = static_cast<char>(bytes[i] ^ 0x5a);
+  write_file_atomic(file, bytes);
+  EXPECT_THROW(Database{file}, DamagedDatabase);
+}
+
+TEST(FileStamp, ChangesWithAWriteAndIsAbsentWithoutAFile) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "f";
+  EXPECT_FALSE(stamp_of(file));
+  EXPECT_FALSE(stamp_of(folder.path())) << "a folder is no file";
+  write_file_atomic(file, std::string_view("one"));
+  const auto before = stamp_of(file);
+  ASSERT_TRUE(before);
+  EXPECT_EQ(before->size_bytes, 3U);
+  EXPECT_TRUE(is_racy(*before));
+  write_file_atomic(file, std::string_view("two"));
+  EXPECT_NE(stamp_of(file), before) << "another inode at least";
+  std::filesystem::last_write_time(
+      file, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
+  EXPECT_FALSE(is_racy(*stamp_of(file)));
+}
+
+}  // namespace
+}  // namespace ds

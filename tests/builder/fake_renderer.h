@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/build/renderer.h"
+#include "tracer/base/error.h"
+#include "tracer/base/files.h"
+#include "tracer/base/hash.h"
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ds {
+
+/// Makes a film that is a pure function of the image's files and settings, in no time, and counts
+/// what it was asked.
+class FakeRenderer : public Renderer {
+ public:
+  /// What all fakes of one build share.
+  struct Calls {
+    std::vector<std::string> traced, geometry;  ///< ids in order
+    std::string fails_on;                       ///< id of an image that cannot be traced
+    std::atomic<bool>* stop_after_one = nullptr;
+  };
+  explicit FakeRenderer(Calls& calls) : calls_(calls) {}
+
+  Film trace(const ImageSpec& image, const std::function<void(const TraceProgress&)>& progress,
+             const std::atomic<bool>& stop) override {
+    if (stop) fail(ErrorKind::cancelled, "stopped");
+    if (image.id == calls_.fails_on) fail(ErrorKind::device, "the fake was told to fail");
+    calls_.traced.push_back(image.id);
+    if (progress) progress({1, 1});
+    Film film{image.engine.width, image.engine.height, {}, 0};
+    const std::uint64_t seed = hash64_text(seed_text(image));
+    for (int i = 0; i < film.width * film.height * 3; ++i)
+      film.rgb.push_back(unit(seed, static_cast<std::uint64_t>(i)));
+    if (calls_.stop_after_one != nullptr) *calls_.stop_after_one = true;
+    return film;
+  }
+  Geometry trace_geometry(const ImageSpec& image) override {
+    calls_.geometry.push_back(image.id);
+    Geometry geometry{image.engine.width, image.engine.height, {}, {}};
+    const std::uint64_t seed = hash64_text(read_text_file(image.model_file) + image.view);
+    for (int i = 0; i < geometry.width * geometry.height; ++i) {
+      const float value = unit(seed, static_cast<std::uint64_t>(i));
+      geometry.mask.push_back(value > 0.5f ? 255 : 0);
+      geometry.depth.push_back(value);
+    }
+    return geometry;
+  }
+  std::string device() const override { return "fake"; }
+
+ private:
+  static std::string seed_text(const ImageSpec& image) {
+    return read_text_file(image.model_file) + read_text_file(image.material_file) +
+           read_text_file(image.environment_folder / "environment.scn") + image.view +
+           fmt::format("{} {}", image.engine.spp, image.engine.seed);
+  }
+  static float unit(std::uint64_t seed, std::uint64_t i) {
+    return static_cast<float>(hash64_text(fmt::format("{} {}", seed, i)) >> 40) * 0x1p-24f;
+  }
+
+  Calls& calls_;
+};
+
+}  // namespace ds

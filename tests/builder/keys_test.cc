@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/build/keys.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One image of tests/data/tiny, to be changed one property at a time.
+class KeysTest : public testing::Test {
+ protected:
+  KeysTest()
+      : recipe_(read_recipe(DS_SOURCE_DIR "/tests/data/tiny/recipe.toml", {})),
+        image_(expand(recipe_).front()) {}
+
+  ImageKeys keys() {
+    Inputs inputs(database_);
+    TextSet texts;
+    return KeyMaker(recipe_, inputs, texts).keys(image_);
+  }
+
+  Database database_{fs::path()};
+  Recipe recipe_;
+  ImageSpec image_;
+};
+
+/// Which keys a change moves.
+struct Moved {
+  bool render, geometry, image;
+  bool operator==(const Moved&) const = default;
+};
+std::ostream& operator<<(std::ostream& out, Moved m) {
+  return out << "render " << m.render << ", geometry " << m.geometry << ", image file " << m.image;
+}
+Moved moved(const ImageKeys& a, const ImageKeys& b) {
+  return {a.render != b.render, a.geometry != b.geometry,
+          a.outputs.front().key != b.outputs.front().key};
+}
+
+TEST_F(KeysTest, AreTheSameEachTime) {
+  const ImageKeys a = keys(), b = keys();
+  EXPECT_EQ(moved(a, b), (Moved{false, false, false}));
+  EXPECT_EQ(a.parts, b.parts);
+  EXPECT_EQ(a.files, b.files);
+}
+
+TEST_F(KeysTest, NamesNeverMatter) {
+  const ImageKeys before = keys();
+  image_.id = "x/0";
+  image_.model_name = "x";
+  image_.view = "other";
+  image_.class_path = "some/class";
+  image_.split = "test";
+  recipe_.name = "other";
+  recipe_.licence = "other";
+  EXPECT_EQ(moved(before, keys()), (Moved{false, false, false}));
+}
+
+TEST_F(KeysTest, EachSettingMovesWhatItCanChangeAndNothingElse) {
+  const fs::path other_model = recipe_.models[1], other_material = recipe_.materials[1];
+  struct Case {
+    const char* what;
+    std::function<void()> change;
+    Moved moved;
+    int part;  // of the first five, -1: none
+  };
+  const Case cases[] = {
+      {"model", [&] { image_.model_file = other_model; }, {true, true, true}, 0},
+      {"size", [&] { recipe_.normalise.size_m = 0.2; }, {true, true, true}, 0},
+      {"crease", [&] { recipe_.normalise.crease_deg = 10; }, {true, true, true}, 0},
+      {"material",
+       [&] {
+         image_.material_file =
+             image_.material_file == other_material ? recipe_.materials[0] : other_material;
+       },
+       {true, false, true},
+       1},
+      {"camera", [&] { image_.camera.position.x += 0.01; }, {true, true, true}, 3},
+      {"field of view", [&] { image_.camera.fov_deg = 50; }, {true, true, true}, 3},
+      {"width", [&] { image_.engine.width += 1; }, {true, true, true}, 4},
+      {"spp", [&] { image_.engine.spp += 1; }, {true, false, true}, 4},
+      {"seed", [&] { image_.engine.seed += 1; }, {true, false, true}, 4},
+      {"math", [&] { image_.engine.math = MathMode::fast; }, {true, false, true}, 4},
+      {"tone map",
+       [&] { recipe_.outputs.tone_map = ToneMap{.scale = 3}; },
+       {false, false, true},
+       -1},
+      {"depth", [&] { recipe_.outputs.depth = true; }, {false, false, false}, -1},
+  };
+  const Recipe recipe = recipe_;
+  const ImageSpec image = image_;
+  const ImageKeys before = keys();
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.what);
+    recipe_ = recipe;
+    image_ = image;
+    c.change();
+    const ImageKeys after = keys();
+    EXPECT_EQ(moved(before, after), c.moved);
+    for (int part = 0; part < 5; ++part) {
+      const auto i = static_cast<std::size_t>(part);
+      EXPECT_EQ(before.parts[i] != after.parts[i], part == c.part) << k_part_names[i];
+    }
+  }
+}
+
+TEST_F(KeysTest, ALensMovesTheFilmAndNotTheMask) {
+  const ImageKeys before = keys();
+  image_.camera.lens_radius_m = 0.01;
+  const ImageKeys after = keys();
+  EXPECT_EQ(moved(before, after), (Moved{true, false, true}));
+}
+
+TEST_F(KeysTest, AnUnusedStepOfTheNormalisationMovesNothing) {
+  recipe_.normalise.place_on_ground = false;
+  recipe_.normalise.normals = Normals::flat;
+  const ImageKeys before = keys();
+  recipe_.normalise.ground_z_m = 7;
+  recipe_.normalise.crease_deg = 7;
+  EXPECT_EQ(moved(before, keys()), (Moved{false, false, false}));
+}
+
+TEST_F(KeysTest, PathsOfOutputsFollowTheId) {
+  recipe_.outputs.depth = true;
+  const ImageKeys made = keys();
+  ASSERT_EQ(made.outputs.size(), 3U);
+  EXPECT_EQ(made.outputs[0].path, "images/box.off/0.png");
+  EXPECT_EQ(made.outputs[1].path, "images/box.off/0.mask.png");
+  EXPECT_EQ(made.outputs[2].path, "images/box.off/0.depth.exr");
+}
+
+TEST_F(KeysTest, AFileThatCannotBeReadFailsTheSameWayEachTime) {
+  image_.model_file = "/no/such/file.ply";
+  Inputs inputs(database_);
+  std::string first, second;
+  try {
+    inputs.model_geometry(image_.model_file);
+  } catch (const Error& error) {
+    first = error.what();
+  }
+  try {
+    inputs.model_geometry(image_.model_file);
+  } catch (const Error& error) {
+    second = error.what();
+  }
+  EXPECT_NE(first, "");
+  EXPECT_EQ(first, second);
+}
+
+}  // namespace
+}  // namespace ds
