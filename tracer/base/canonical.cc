@@ -42,7 +42,9 @@ std::string hex_float(double value) {
   return fmt::format("{:a}", value);
 }
 
-std::string hex_float(float value) { return hex_float(static_cast<double>(value)); }
+std::string hex_float(float value) {
+  return hex_float(static_cast<double>(value));
+}
 
 void CanonicalText::add(std::string_view name, std::string_view value) {
   text_ += name;
@@ -51,10 +53,18 @@ void CanonicalText::add(std::string_view name, std::string_view value) {
   text_ += '\n';
 }
 
-void CanonicalText::add(std::string_view name, std::int64_t value) { add(name, fmt::format("{}", value)); }
-void CanonicalText::add(std::string_view name, std::uint64_t value) { add(name, fmt::format("{}", value)); }
-void CanonicalText::add(std::string_view name, std::span<const float> values) { add(name, hex_floats(values)); }
-void CanonicalText::add(std::string_view name, std::span<const double> values) { add(name, hex_floats(values)); }
+void CanonicalText::add(std::string_view name, std::int64_t value) {
+  add(name, fmt::format("{}", value));
+}
+void CanonicalText::add(std::string_view name, std::uint64_t value) {
+  add(name, fmt::format("{}", value));
+}
+void CanonicalText::add(std::string_view name, std::span<const float> values) {
+  add(name, hex_floats(values));
+}
+void CanonicalText::add(std::string_view name, std::span<const double> values) {
+  add(name, hex_floats(values));
+}
 
 std::vector<std::pair<std::string, std::string>> parse_canonical(std::string_view text) {
   std::vector<std::pair<std::string, std::string>> entries;

@@ -10,14 +10,14 @@
 
 namespace ds {
 
-/// A float as C's hexadecimal form with no superfluous digits ("0x1.8p-1"), so that equal text means equal bits.
-/// -0 is "-0x0p+0", infinities "inf" and "-inf", any NaN "nan".
+/// A float as C's hexadecimal form with no superfluous digits ("0x1.8p-1"), so that equal text
+/// means equal bits. -0 is "-0x0p+0", infinities "inf" and "-inf", any NaN "nan".
 std::string hex_float(float value);
 std::string hex_float(double value);
 
-/// Canonical text: one "name = value" line an entry, in the order added. The render key is the hash of such texts and
-/// `explain` is the difference of two, so a name must say what it is to a person ("body.kd", "fov_y_deg").
-/// A value's line breaks are escaped, so an entry is always one line.
+/// Canonical text: one "name = value" line an entry, in the order added. The render key is the hash
+/// of such texts and `explain` is the difference of two, so a name must say what it is to a person
+/// ("body.kd", "fov_y_deg"). A value's line breaks are escaped, so an entry is always one line.
 class CanonicalText {
  public:
   void add(std::string_view name, std::string_view value);
@@ -26,7 +26,9 @@ class CanonicalText {
   void add(std::string_view name, std::uint64_t value);
   void add(std::string_view name, int value) { add(name, std::int64_t{value}); }
   void add(std::string_view name, unsigned value) { add(name, std::uint64_t{value}); }
-  void add(std::string_view name, bool value) { add(name, std::string_view(value ? "true" : "false")); }
+  void add(std::string_view name, bool value) {
+    add(name, std::string_view(value ? "true" : "false"));
+  }
   void add(std::string_view name, float value) { add(name, hex_float(value)); }
   void add(std::string_view name, double value) { add(name, hex_float(value)); }
   /// Numbers separated by one space.

@@ -20,7 +20,8 @@ enum class ErrorKind {
   cancelled,  ///< the user asked to stop
 };
 
-/// Anything the world can do to us. `what()` is one line (or one line a diagnostic), lower case, no full stop.
+/// Anything the world can do to us. `what()` is one line (or one line a diagnostic), lower case, no
+/// full stop.
 class Error : public std::runtime_error {
  public:
   Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
@@ -49,7 +50,8 @@ struct SourcePlace {
 /// "file:line:column", leaving out what is unknown.
 std::string to_string(const SourcePlace& place);
 
-/// Collects the findings of a parser so that all are reported together, in the order they were added.
+/// Collects the findings of a parser so that all are reported together, in the order they were
+/// added.
 class Diagnostics {
  public:
   explicit Diagnostics(ErrorKind kind) : kind_(kind) {}
@@ -76,5 +78,6 @@ class Diagnostics {
 }  // namespace ds
 
 /// On in every build type.
-#define DS_ASSERT(expression) \
-  (static_cast<bool>(expression) ? void(0) : ::ds::assertion_failed(#expression, __FILE__, __LINE__))
+#define DS_ASSERT(expression)              \
+  (static_cast<bool>(expression) ? void(0) \
+                                 : ::ds::assertion_failed(#expression, __FILE__, __LINE__))

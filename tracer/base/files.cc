@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/files.h"
 
-#include <fcntl.h>
-#include <linux/fs.h>
-#include <sys/ioctl.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include "tracer/base/error.h"
+#include "tracer/base/hash.h"
 
 #include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <fcntl.h>
 #include <fstream>
 #include <iterator>
+#include <linux/fs.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <system_error>
-
-#include "tracer/base/error.h"
-#include "tracer/base/hash.h"
+#include <unistd.h>
 
 namespace ds {
 namespace {
@@ -25,13 +24,15 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void fail_errno(const fs::path& path, const char* what) {
   const int error = errno;
-  fail(ErrorKind::io, "{}: cannot {}: {}", path.string(), what, std::generic_category().message(error));
+  fail(ErrorKind::io, "{}: cannot {}: {}", path.string(), what,
+       std::generic_category().message(error));
 }
 
 /// An open file descriptor that closes itself; `close` reports what the destructor has to swallow.
 class Descriptor {
  public:
-  Descriptor(const fs::path& path, int flags) : path_(path), fd_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {
+  Descriptor(const fs::path& path, int flags)
+      : path_(path), fd_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {
     if (fd_ < 0) fail_errno(path, "open");
   }
   ~Descriptor() {
@@ -57,10 +58,11 @@ class Descriptor {
 class TemporaryName {
  public:
   explicit TemporaryName(const fs::path& target) {
-    // Process and counter keep writers of one target apart; a crashed writer's leftover is simply overwritten.
+    // Process and counter keep writers of one target apart; a crashed writer's leftover is simply
+    // overwritten.
     static std::atomic<unsigned> counter{0};
-    path_ = target.parent_path() /
-            fmt::format(".{}.{}.{}.tmp", target.filename().string(), ::getpid(), counter.fetch_add(1));
+    path_ = target.parent_path() / fmt::format(".{}.{}.{}.tmp", target.filename().string(),
+                                               ::getpid(), counter.fetch_add(1));
   }
   ~TemporaryName() {
     if (!renamed_) ::unlink(path_.c_str());
@@ -69,7 +71,8 @@ class TemporaryName {
   TemporaryName& operator=(const TemporaryName&) = delete;
   const fs::path& path() const { return path_; }
   void rename_to(const fs::path& target) {
-    if (::rename(path_.c_str(), target.c_str()) != 0) fail_errno(target, "rename a finished temporary to");
+    if (::rename(path_.c_str(), target.c_str()) != 0)
+      fail_errno(target, "rename a finished temporary to");
     renamed_ = true;
     sync_folder(target.parent_path());
   }
@@ -107,7 +110,8 @@ bool reflink(const fs::path& from, const fs::path& to) {
 }  // namespace
 
 std::string read_text_file(const fs::path& path) {
-  if (fs::is_directory(path)) fail(ErrorKind::io, "{}: wanted a file, found a folder", path.string());
+  if (fs::is_directory(path))
+    fail(ErrorKind::io, "{}: wanted a file, found a folder", path.string());
   std::ifstream in(path, std::ios::binary);
   if (!in) fail_errno(path, "open");
   std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
@@ -118,10 +122,13 @@ std::string read_text_file(const fs::path& path) {
 void make_folders(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) fail(ErrorKind::io, "{}: cannot make the folder: {}", folder.string(), error.message());
+  if (error)
+    fail(ErrorKind::io, "{}: cannot make the folder: {}", folder.string(), error.message());
 }
 
-void sync_folder(const fs::path& folder) { Descriptor(folder, O_RDONLY | O_DIRECTORY).sync(); }
+void sync_folder(const fs::path& folder) {
+  Descriptor(folder, O_RDONLY | O_DIRECTORY).sync();
+}
 
 void write_file_atomic(const fs::path& path, std::span<const std::byte> bytes) {
   const fs::path target = prepare_target(path);
@@ -133,7 +140,9 @@ void write_file_atomic(const fs::path& path, std::span<const std::byte> bytes) {
   temporary.rename_to(target);
 }
 
-void write_file_atomic(const fs::path& path, std::string_view text) { write_file_atomic(path, bytes_of(text)); }
+void write_file_atomic(const fs::path& path, std::string_view text) {
+  write_file_atomic(path, bytes_of(text));
+}
 
 void link_file_atomic(const fs::path& from, const fs::path& to) {
   const fs::path target = prepare_target(to);

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/hash.h"
 
-#include <openssl/evp.h>
+#include "tracer/base/error.h"
+
 #include <xxhash.h>
 
 #include <array>
 #include <charconv>
 #include <cstdio>
 #include <memory>
+#include <openssl/evp.h>
 #include <vector>
-
-#include "tracer/base/error.h"
 
 namespace ds {
 namespace {
@@ -51,11 +51,15 @@ struct XxhDeleter {
   void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
 };
 
-Hash128 from_xxh(XXH128_hash_t hash) { return {hash.high64, hash.low64}; }
+Hash128 from_xxh(XXH128_hash_t hash) {
+  return {hash.high64, hash.low64};
+}
 
 }  // namespace
 
-std::string Hash128::hex() const { return fmt::format("{:016x}{:016x}", high, low); }
+std::string Hash128::hex() const {
+  return fmt::format("{:016x}{:016x}", high, low);
+}
 
 std::optional<Hash128> Hash128::from_hex(std::string_view text) {
   if (text.size() != 32 || text.find_first_not_of("0123456789abcdef") != text.npos) return {};
@@ -69,9 +73,13 @@ Hash128 hash_bytes(std::span<const std::byte> bytes) {
   return from_xxh(XXH3_128bits(bytes.data(), bytes.size()));
 }
 
-Hash128 hash_text(std::string_view text) { return hash_bytes(bytes_of(text)); }
+Hash128 hash_text(std::string_view text) {
+  return hash_bytes(bytes_of(text));
+}
 
-std::uint64_t hash64_text(std::string_view text) { return XXH3_64bits(text.data(), text.size()); }
+std::uint64_t hash64_text(std::string_view text) {
+  return XXH3_64bits(text.data(), text.size());
+}
 
 std::string sha256_hex(std::span<const std::byte> bytes) {
   Sha256 sha;

@@ -5,7 +5,8 @@
 
 namespace ds {
 
-/// One line on standard error, prefixed "dsbuild: warning: ". Safe from any thread; a line is never torn.
+/// One line on standard error, prefixed "dsbuild: warning: ". Safe from any thread; a line is never
+/// torn.
 void warn(std::string_view message);
 
 }  // namespace ds

@@ -46,7 +46,9 @@ BasicVec3<T> normalized(BasicVec3<T> a) {
   const T l = length(a);
   return l > T(0) ? a * (T(1) / l) : BasicVec3<T>{};
 }
-inline Vec3d to_double(Vec3 a) { return {double{a.x}, double{a.y}, double{a.z}}; }
+inline Vec3d to_double(Vec3 a) {
+  return {double{a.x}, double{a.y}, double{a.z}};
+}
 inline Vec3 to_float(Vec3d a) {
   return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
 }
@@ -68,7 +70,8 @@ struct Mat4 {
     return r;
   }
   Vec3d point(Vec3d p) const {
-    return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+    return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3],
+            m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
             m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
   }
   Vec3d direction(Vec3d d) const {

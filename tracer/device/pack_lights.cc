@@ -114,11 +114,16 @@ Row infinite_row(const Scene& scene, const Light& light, double scene_radius, Wo
   p.add(own_texels);
   p.add(tables.offset());
   add_cumulative(rows, tables);
-  p.add(tables.offset());
-  for (std::size_t r = 0; r <= h; ++r)
-    add_cumulative({cells.weights.begin() + static_cast<std::ptrdiff_t>(r * w),
-                    cells.weights.begin() + static_cast<std::ptrdiff_t>((r + 1) * w)},
-                   tables);
+  constexpr std::size_t block = kernels::k_column_block;
+  const std::size_t blocks = (w + block - 1) / block;
+  const std::uint32_t columns = tables.offset();
+  p.add(columns);
+  for (std::size_t r = 0; r <= h; ++r) {
+    std::vector<double> row(cells.weights.begin() + static_cast<std::ptrdiff_t>(r * w),
+                            cells.weights.begin() + static_cast<std::ptrdiff_t>((r + 1) * w));
+    row.resize(blocks * block, 0.0);
+    add_cumulative(row, tables);
+  }
   p.add(tables.offset());
   const double cell_angle = (2 * k_pi / image.width) * (k_pi / image.height);
   for (std::size_t i = 0; i < cells.weights.size(); ++i)
@@ -128,6 +133,9 @@ Row infinite_row(const Scene& scene, const Light& light, double scene_radius, Wo
   for (std::size_t row = 0; row < 3; ++row)
     for (std::size_t column = 0; column < 3; ++column)
       p.add(static_cast<float>(light.light_to_world.m[column * 4 + row]));
+  p.add(tables.offset());
+  for (std::size_t i = block - 1; i < (h + 1) * blocks * block; i += block)
+    tables.add(std::uint32_t{tables.words()[columns + i]});
   // What falls on a disc of the scene's radius: power, as for the others.
   result.weight =
       cells.total * cell_angle * luminance(light.color) * k_pi * scene_radius * scene_radius;

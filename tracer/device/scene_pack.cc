@@ -139,7 +139,6 @@ PackedScene pack_scene(const Scene& scene, const Features& features, float filte
   if (corners.empty()) fail(ErrorKind::asset, "the scene has no triangle");
   PackedScene packed;
   packed.bvh = build_bvh(corners, quality);
-  packed.data.reach = packed.bvh.reach;
   const std::vector<std::uint32_t> texels = pack_texels(scene, packed.tables);
   packed.data.filter_table = pack_filter(filter_width, packed.tables);
   pack_materials(scene, features, texels, packed);

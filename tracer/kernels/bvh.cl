@@ -3,22 +3,26 @@
 // triangles of a leaf are tested together in one vector.
 //
 // The nearest hit is the least (t, id) over all triangles, whatever the tree: a triangle's t
-// depends on ray and triangle alone, and no box is skipped that could hold it. Three errors must be
-// covered for that. Boxes are compared as fma(plane, 1/d, -o/d); the product o/d is wrong by half
-// an ulp, and the triangle test by a few ulps of the distances it works with, so both ends of every
-// slab are moved outwards by k_slab_error (|o| + reach) / |d| (a constant of the ray: it costs
-// nothing a node). 1/d itself is wrong by half an ulp: relative, so the far end is scaled by
-// k_far_scale.
+// depends on ray and triangle alone, and no box is skipped that could hold it. The errors that must
+// be covered for that, in units of half an ulp of the lengths named:
+//   - boxes are compared as fma(plane, 1/d, -o/d): 1 |o| for the product, 2 of the box's distance
+//     for 1/d and its use;
+//   - the triangle test misplaces a corner by 4 of its distance from the origin, which is at most
+//     the hit's distance and the triangle's own extent.
+// The extent's part is added to the boxes when the tree is built (k_box_error). For the rest both
+// ends of every slab are moved outwards by k_slab_error (|o| + distance) / |d|, where nothing is
+// hit beyond `distance`: constants of the ray, so they cost nothing a node. Rounding of the
+// comparison itself is relative and covered by k_far_scale.
 #pragma once
 
 #include "tracer/kernels/types.h"
 
-#define k_slab_error 9.5367431640625e-7f /* 16 ulps */
+#define k_slab_error 4.76837158203125e-7f /* 8 half-ulps */
 #define k_far_scale 1.0000005f
 #define k_leaf_bit 0x80000000u
 
 typedef struct {
-  float t;       ///< distance in lengths of the direction, or the ray's reach where nothing is hit
+  float t;       ///< distance in lengths of the direction, or the ray's t_max where nothing is hit
   float b1, b2;  ///< barycentric weights of corners 1 and 2
   uint id;       ///< triangle, or k_none
 } Hit;
@@ -69,42 +73,57 @@ DS_FN float least_of(float8 a) {
 typedef struct {
   float inverse[3];
   float near_offset[3], far_offset[3];
-  int near_plane[3];  ///< vector of a node that holds the plane met first
+  // Offsets in a node, in floats, of the planes met first and last: kept whole, so that a plane's
+  // address takes no arithmetic.
+  long near_plane[3], far_plane[3];
 } SlabRay;
 
-DS_FN SlabRay slab_ray(const Ray* ray, float reach) {
+/// Where the ray leaves the scene's bounds, or 0 where it does not meet them: nothing is hit
+/// beyond.
+DS_FN float leave_scene(const __global float8* nodes, const Ray* ray, const float* inverse) {
+  const __global float* bounds = (const __global float*)(nodes + k_root_bounds);
+  float leave = ray->t_max;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float plane = bounds[inverse[axis] < 0.0f ? axis : 3 + axis];
+    leave = fmin(leave, (plane - ray->origin[axis]) * inverse[axis]);
+  }
+  return fmax(leave, 0.0f);
+}
+
+DS_FN SlabRay slab_ray(const __global float8* nodes, const Ray* ray) {
   SlabRay s;
-  const float origin_reach =
-      fmax(fabs(ray->origin[0]), fmax(fabs(ray->origin[1]), fabs(ray->origin[2])));
-  const float margin = k_slab_error * (origin_reach + reach);
   for (int axis = 0; axis < 3; ++axis) {
     const float d = ray->direction[axis];
-    const float divisor = fabs(d) < 1e-18f ? copysign(1e-18f, d) : d;
-    const float inverse = 1.0f / divisor;
-    const float offset = -ray->origin[axis] * inverse;
-    const float widen = margin * fabs(inverse);
-    s.inverse[axis] = inverse;
+    s.inverse[axis] = 1.0f / (fabs(d) < 1e-18f ? copysign(1e-18f, d) : d);
+    const long first = 2 * axis + (s.inverse[axis] < 0.0f ? 1 : 0);
+    s.near_plane[axis] = first * k_bvh_width;
+    s.far_plane[axis] = (first ^ 1) * k_bvh_width;
+  }
+  const float distance = leave_scene(nodes, ray, s.inverse);
+  for (int axis = 0; axis < 3; ++axis) {
+    const float offset = -ray->origin[axis] * s.inverse[axis];
+    const float margin = k_slab_error * (fabs(ray->origin[axis]) + distance);
+    const float widen = margin * fabs(s.inverse[axis]);
     s.near_offset[axis] = offset - widen;
     s.far_offset[axis] = offset + widen;
-    s.near_plane[axis] = 2 * axis + (inverse < 0.0f ? 1 : 0);
   }
   return s;
 }
 
 /// Entry distances of the eight children; `*open` tells which are met before t_max.
 DS_FN float8 test_boxes(const __global float8* node, const SlabRay* s, float t_max, LaneSet* open) {
+  const __global float* planes = (const __global float*)node;
+#define DS_PLANE(end, axis) (*(const __global float8*)(planes + s->end##_plane[axis]))
   const float8 near_x =
-      fma(node[s->near_plane[0]], (float8)(s->inverse[0]), (float8)(s->near_offset[0]));
+      fma(DS_PLANE(near, 0), (float8)(s->inverse[0]), (float8)(s->near_offset[0]));
   const float8 near_y =
-      fma(node[s->near_plane[1]], (float8)(s->inverse[1]), (float8)(s->near_offset[1]));
+      fma(DS_PLANE(near, 1), (float8)(s->inverse[1]), (float8)(s->near_offset[1]));
   const float8 near_z =
-      fma(node[s->near_plane[2]], (float8)(s->inverse[2]), (float8)(s->near_offset[2]));
-  const float8 far_x =
-      fma(node[s->near_plane[0] ^ 1], (float8)(s->inverse[0]), (float8)(s->far_offset[0]));
-  const float8 far_y =
-      fma(node[s->near_plane[1] ^ 1], (float8)(s->inverse[1]), (float8)(s->far_offset[1]));
-  const float8 far_z =
-      fma(node[s->near_plane[2] ^ 1], (float8)(s->inverse[2]), (float8)(s->far_offset[2]));
+      fma(DS_PLANE(near, 2), (float8)(s->inverse[2]), (float8)(s->near_offset[2]));
+  const float8 far_x = fma(DS_PLANE(far, 0), (float8)(s->inverse[0]), (float8)(s->far_offset[0]));
+  const float8 far_y = fma(DS_PLANE(far, 1), (float8)(s->inverse[1]), (float8)(s->far_offset[1]));
+  const float8 far_z = fma(DS_PLANE(far, 2), (float8)(s->inverse[2]), (float8)(s->far_offset[2]));
+#undef DS_PLANE
   const float8 entry = greater8(greater8(near_x, near_y), greater8(near_z, (float8)(0.0f)));
   const float8 leave =
       lesser8(lesser8(far_x, far_y), lesser8(far_z, (float8)(t_max))) * k_far_scale;
@@ -115,18 +134,18 @@ DS_FN float8 test_boxes(const __global float8* node, const SlabRay* s, float t_m
 /// Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection": the ray is sheared onto its
 /// longest axis.
 typedef struct {
-  int x, y, z;  ///< axes; z is the direction's longest
+  long x, y, z;  ///< axes; z is the direction's longest
   float shear_x, shear_y, shear_z;
 } ShearRay;
 
-DS_FN ShearRay shear_ray(const Ray* ray) {
+DS_FN ShearRay shear_ray(const Ray* ray, const float* inverse) {
   const float* d = ray->direction;
   ShearRay s;
   s.z = fabs(d[0]) > fabs(d[1]) ? (fabs(d[0]) > fabs(d[2]) ? 0 : 2)
                                 : (fabs(d[1]) > fabs(d[2]) ? 1 : 2);
   s.x = s.z == 2 ? 0 : s.z + 1;
   s.y = s.x == 2 ? 0 : s.x + 1;
-  s.shear_z = 1.0f / d[s.z];
+  s.shear_z = inverse[s.z];
   s.shear_x = d[s.x] * s.shear_z;
   s.shear_y = d[s.y] * s.shear_z;
   return s;
@@ -148,15 +167,18 @@ DS_FN LeafHits test_leaf(const __global float8* leaf, const Ray* ray, const Shea
   const float8 oz = (float8)(ray->origin[s->z]);
   const float8 shear_x = (float8)(-s->shear_x);
   const float8 shear_y = (float8)(-s->shear_y);
-  const float8 az = leaf[s->z] - oz;
-  const float8 bz = leaf[3 + s->z] - oz;
-  const float8 cz = leaf[6 + s->z] - oz;
-  const float8 ax = fma(shear_x, az, leaf[s->x] - ox);
-  const float8 ay = fma(shear_y, az, leaf[s->y] - oy);
-  const float8 bx = fma(shear_x, bz, leaf[3 + s->x] - ox);
-  const float8 by = fma(shear_y, bz, leaf[3 + s->y] - oy);
-  const float8 cx = fma(shear_x, cz, leaf[6 + s->x] - ox);
-  const float8 cy = fma(shear_y, cz, leaf[6 + s->y] - oy);
+  const __global float8* xs = leaf + s->x;
+  const __global float8* ys = leaf + s->y;
+  const __global float8* zs = leaf + s->z;
+  const float8 az = zs[0] - oz;
+  const float8 bz = zs[3] - oz;
+  const float8 cz = zs[6] - oz;
+  const float8 ax = fma(shear_x, az, xs[0] - ox);
+  const float8 ay = fma(shear_y, az, ys[0] - oy);
+  const float8 bx = fma(shear_x, bz, xs[3] - ox);
+  const float8 by = fma(shear_y, bz, ys[3] - oy);
+  const float8 cx = fma(shear_x, cz, xs[6] - ox);
+  const float8 cy = fma(shear_y, cz, ys[6] - oy);
   const float8 u = cx * by - cy * bx;
   const float8 v = ax * cy - ay * cx;
   const float8 w = bx * ay - by * ax;
@@ -234,15 +256,24 @@ DS_FN uint push_open(Stack* stack, int* size, const __global float8* node, float
   return child[nearest];
 }
 
+/// Numbers that are none, or beyond what a scene may hold, make NaN of box tests, and NaN would
+/// meet the boxes of absent children for ever. Such a ray hits nothing.
+DS_FN bool is_traceable(const Ray* ray) {
+  bool sound = true;
+  for (int axis = 0; axis < 3; ++axis)
+    sound = sound && fabs(ray->origin[axis]) <= 1e18f && fabs(ray->direction[axis]) <= 1e18f;
+  return sound;
+}
+
 /// The nearest hit in (0, t_max].
-static Hit nearest_hit(const __global float8* nodes, const __global float8* leaves, float reach,
-                       Ray ray) {
-  const SlabRay slab = slab_ray(&ray, reach);
-  const ShearRay shear = shear_ray(&ray);
+static Hit nearest_hit(const __global float8* nodes, const __global float8* leaves, Ray ray) {
+  const SlabRay slab = slab_ray(nodes, &ray);
+  const ShearRay shear = shear_ray(&ray, slab.inverse);
   Hit hit;
   hit.t = ray.t_max;
   hit.b1 = hit.b2 = 0.0f;
   hit.id = k_none;
+  if (!is_traceable(&ray)) return hit;
   Stack stack;
   int size = 0;
   uint current = 0;
@@ -271,10 +302,10 @@ static Hit nearest_hit(const __global float8* nodes, const __global float8* leav
 }
 
 /// True where anything is hit in (0, t_max].
-static bool any_hit(const __global float8* nodes, const __global float8* leaves, float reach,
-                    Ray ray) {
-  const SlabRay slab = slab_ray(&ray, reach);
-  const ShearRay shear = shear_ray(&ray);
+static bool any_hit(const __global float8* nodes, const __global float8* leaves, Ray ray) {
+  if (!is_traceable(&ray)) return false;
+  const SlabRay slab = slab_ray(nodes, &ray);
+  const ShearRay shear = shear_ray(&ray, slab.inverse);
   uint stack[k_bvh_stack];
   int size = 0;
   uint current = 0;

@@ -13,7 +13,7 @@ DS_FN bool is_camera_invisible(const __global float* triangles, uint id) {
 /// in metres, or 0.
 __kernel void trace_geometry(const __global float8* restrict nodes,
                              const __global float8* restrict leaves,
-                             const __global float* restrict triangles, float reach,
+                             const __global float* restrict triangles,
                              const __global ViewData* restrict view,
                              __global uint* restrict objects, __global float* restrict depths) {
   const uint i = get_global_id(0);
@@ -28,7 +28,7 @@ __kernel void trace_geometry(const __global float8* restrict nodes,
     ray.direction[axis] = fma(sx, view->right[axis], fma(sy, view->up[axis], view->forward[axis]));
   }
   ray.t_max = 1e30f;
-  Hit hit = nearest_hit(nodes, leaves, reach, ray);
+  Hit hit = nearest_hit(nodes, leaves, ray);
   float passed = 0.0f;
   while (hit.id != k_none && is_camera_invisible(triangles, hit.id)) {
     // On from just behind the surface: a few ulps of all that was passed.
@@ -36,7 +36,7 @@ __kernel void trace_geometry(const __global float8* restrict nodes,
     passed += step;
     for (int axis = 0; axis < 3; ++axis)
       ray.origin[axis] = fma(step, ray.direction[axis], ray.origin[axis]);
-    hit = nearest_hit(nodes, leaves, reach, ray);
+    hit = nearest_hit(nodes, leaves, ray);
   }
   const bool met = hit.id != k_none;
   objects[i] = met ? as_uint(triangles[hit.id * k_triangle_words + k_triangle_object]) : k_none;

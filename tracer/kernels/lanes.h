@@ -148,6 +148,9 @@ DS_FN natural choose_natural(mask m, natural a, natural b) {
 DS_FN integer choose_integer(mask m, integer a, integer b) {
   return m ? a : b;
 }
+DS_FN mask choose_mask(mask m, mask a, mask b) {
+  return (m & a) | ((!m) & b);
+}
 DS_FN natural load_natural(DS_GLOBAL float* p, natural i) {
   return bits_of(load(p, i));
 }

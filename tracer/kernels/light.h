@@ -46,8 +46,8 @@ DS_FN LightSample choose(mask m, LightSample a, LightSample b) {
   LightSample s;
   s.wi = choose(m, a.wi, b.wi);
   s.target = choose(m, a.target, b.target);
-  s.bounded = (m & a.bounded) | (!m & b.bounded);
-  s.dirac = (m & a.dirac) | (!m & b.dirac);
+  s.bounded = choose_mask(m, a.bounded, b.bounded);
+  s.dirac = choose_mask(m, a.dirac, b.dirac);
   s.radiance = choose(m, a.radiance, b.radiance);
   s.pdf = choose(m, a.pdf, b.pdf);
   return s;

@@ -53,7 +53,7 @@ DS_FN real sine(real x) {
   return sin_cos_turns(x * DS_INV_TWO_PI).sin;
 }
 
-/// e^x. Results are held in [2^-126, 2^126]; relative error below 3e-7 for |x| <= 80.
+/// e^x. Results are held in [2^-127, 2^127]; relative error below 3e-7 for |x| <= 80.
 DS_FN real exponential(real x) {
   real y = x * 1.44269504f;
   y = greater(lesser(y, (real)(126.0f)), (real)(-126.0f));

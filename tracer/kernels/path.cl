@@ -118,11 +118,11 @@ typedef struct {
   int hit[DS_LANES] __attribute__((aligned(64)));
 } LaneHits;
 
-DS_FN void trace_lanes(const SceneTables* t, float reach, const LaneRays* rays, LaneHits* hits) {
+DS_FN void trace_lanes(const SceneTables* t, const LaneRays* rays, LaneHits* hits) {
   for (int lane = 0; lane < DS_LANES; ++lane) {
     hits->hit[lane] = 0;
     if (!rays->wanted[lane]) continue;
-    const Hit hit = nearest_hit(t->nodes, t->leaves, reach, lane_ray(rays, lane));
+    const Hit hit = nearest_hit(t->nodes, t->leaves, lane_ray(rays, lane));
     if (hit.id == k_none) continue;
     DS_GLOBAL float* triangle = t->triangles + hit.id * k_triangle_words;
     for (int i = 0; i < k_triangle_words; ++i)
@@ -152,7 +152,9 @@ DS_FN Surface surface_of(const LaneHits* hits, real3 wo) {
   const real3 size = vec(absolute(p0.x) + absolute(p1.x) + absolute(p2.x),
                          absolute(p0.y) + absolute(p1.y) + absolute(p2.y),
                          absolute(p0.z) + absolute(p1.z) + absolute(p2.z));
-  s.error = scale(size, (real)(k_position_error));
+  // Of the greatest component, also across it: along a ray that grazes the plane of a coordinate,
+  // the triangle test's error comes from the long axes.
+  s.error = splat(max_component(size) * k_position_error);
   const real3 own = unit(cross(scale(sub(p1, p0), (real)(1e6f)), scale(sub(p2, p0), (real)(1e6f))));
   s.outside = dot(own, wo) >= 0.0f;
   const real side = choose(s.outside, (real)(1.0f), (real)(-1.0f));
@@ -220,12 +222,11 @@ DS_FN DirectLight direct_light(const Paths* paths, mask active, const Surface* s
   return d;
 }
 
-DS_FN void add_unshadowed(Paths* paths, DirectLight d, const SceneTables* t, float reach,
-                          const LaneRays* rays) {
+DS_FN void add_unshadowed(Paths* paths, DirectLight d, const SceneTables* t, const LaneRays* rays) {
   int clear[DS_LANES] __attribute__((aligned(64)));
   for (int lane = 0; lane < DS_LANES; ++lane) {
     clear[lane] =
-        rays->wanted[lane] && !any_hit(t->nodes, t->leaves, reach, lane_ray(rays, lane)) ? -1 : 0;
+        rays->wanted[lane] && !any_hit(t->nodes, t->leaves, lane_ray(rays, lane)) ? -1 : 0;
   }
   const mask lit = d.wanted & (*(mask*)clear != 0);
   paths->radiance = add(paths->radiance, choose(lit, d.radiance, splat((real)(0.0f))));
@@ -275,7 +276,7 @@ DS_FN mask scatter(Paths* paths, mask active, const Surface* s, const MaterialPo
 /// The pixels' running sums while this work-item works on them.
 typedef struct {
   real sum[3], compensation[3];
-  real rejected;
+  real rejected, halves;
 } Sums;
 
 DS_FN void load_sums(Sums* sums, const __global float* film, const Pixels* pixels, uint plane) {
@@ -284,11 +285,12 @@ DS_FN void load_sums(Sums* sums, const __global float* film, const Pixels* pixel
     sums->compensation[c] = load(film + (k_film_compensation + c) * plane, pixels->index);
   }
   sums->rejected = load(film + k_film_rejected * plane, pixels->index);
+  sums->halves = load(film + k_film_halves * plane, pixels->index);
 }
 
-/// Adds the finished samples in `done`. Neumaier 1974: what the sum's rounding cuts off is summed
-/// beside it.
-DS_FN void add_samples(Sums* sums, mask done, real3 radiance) {
+/// Adds the finished samples in `done`, by number. Neumaier 1974: what the sum's rounding cuts off
+/// is summed beside it.
+DS_FN void add_samples(Sums* sums, mask done, natural number, real3 radiance) {
   const real sample[3] = {radiance.x, radiance.y, radiance.z};
   mask good = done;
   for (int c = 0; c < 3; ++c)
@@ -303,6 +305,9 @@ DS_FN void add_samples(Sums* sums, mask done, real3 radiance) {
     sums->sum[c] = total;
   }
   sums->rejected = sums->rejected + choose(done & !good, (real)(1.0f), (real)(0.0f));
+  const real signed_luminance =
+      choose((number & 1u) == 0u, luminance(radiance), -luminance(radiance));
+  sums->halves = sums->halves + choose(good, signed_luminance, (real)(0.0f));
 }
 
 DS_FN void store_sums(const Sums* sums, __global float* film, const Pixels* pixels, uint plane) {
@@ -314,6 +319,7 @@ DS_FN void store_sums(const Sums* sums, __global float* film, const Pixels* pixe
     *(real*)value[k_film_compensation + c] = sums->compensation[c];
   }
   *(real*)value[k_film_rejected] = sums->rejected;
+  *(real*)value[k_film_halves] = sums->halves;
   *(natural*)index = pixels->index;
   *(mask*)inside = pixels->inside;
   for (int lane = 0; lane < DS_LANES; ++lane) {
@@ -330,7 +336,7 @@ DS_FN mask advance(Paths* paths, const Pixels* pixels, const SceneData* scene, c
   LaneRays rays;
   LaneHits hits;
   store_rays(&rays, paths->origin, paths->direction, (real)(1e30f), paths->alive);
-  trace_lanes(t, scene->reach, &rays, &hits);
+  trace_lanes(t, &rays, &hits);
   mask hit = paths->alive & (*(mask*)hits.hit != 0);
   const mask escapes = paths->alive & !hit;
   mask done = escapes;
@@ -388,7 +394,7 @@ DS_FN mask advance(Paths* paths, const Pixels* pixels, const SceneData* scene, c
 #ifdef DS_LIGHTS_SAMPLED
   const DirectLight direct =
       direct_light(paths, active, &s, &m, frame, viewer, sampler, pair, choices.x, scene, t, &rays);
-  if (any_lane(direct.wanted)) add_unshadowed(paths, direct, t, scene->reach, &rays);
+  if (any_lane(direct.wanted)) add_unshadowed(paths, direct, t, &rays);
 #endif
   return done |
          scatter(paths, active, &s, &m, frame, viewer, sampler, pair, lobe_choice, choices.y, view);
@@ -424,7 +430,7 @@ __kernel void trace_paths(
   while (any_lane(paths.alive)) {
     const mask done = advance(&paths, &pixels, &scene, &view, &t);
     if (!any_lane(done)) continue;
-    add_samples(&sums, done, paths.radiance);
+    add_samples(&sums, done, paths.sample, paths.radiance);
     paths.alive = paths.alive & !done;
     paths.sample += choose_natural(done, (natural)(1u), (natural)(0u));
     const mask start = done & (paths.sample < view.sample_end);

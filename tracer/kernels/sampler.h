@@ -62,11 +62,14 @@ DS_FN real unit_interval(natural digits) {
   return to_real(digits >> 8) * 5.9604644775390625e-8f;
 }
 
-/// `seed_low`, `seed_high`: of the image. `pixel`: y * width + x. `sample`: from 0, below 2^32.
+/// The sampler of a sample of a pixel. Even and odd samples are two sequences scrambled
+/// independently of each other: their difference tells the error of their mean (render.h,
+/// Film::relative_error). `seed_low`, `seed_high`: of the image. `pixel`: y * width + x. `sample`:
+/// from 0, below 2^32.
 DS_FN Sampler sampler_for(uint seed_low, uint seed_high, natural pixel, natural sample) {
   Sampler s;
-  s.reversed_index = reverse_bits(sample);
-  s.seed = mix_bits(mix_bits(pixel ^ seed_low) ^ seed_high);
+  s.reversed_index = reverse_bits(sample >> 1);
+  s.seed = mix_bits(mix_bits(pixel ^ seed_low) ^ seed_high) ^ ((sample & 1u) * 0x6a09e667u);
   return s;
 }
 

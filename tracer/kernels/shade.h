@@ -95,9 +95,9 @@ DS_FN BsdfSample choose(mask m, BsdfSample a, BsdfSample b) {
   s.weight = choose(m, a.weight, b.weight);
   s.pdf = choose(m, a.pdf, b.pdf);
   s.eta_scale = choose(m, a.eta_scale, b.eta_scale);
-  s.valid = (m & a.valid) | (!m & b.valid);
-  s.specular = (m & a.specular) | (!m & b.specular);
-  s.glossy = (m & a.glossy) | (!m & b.glossy);
+  s.valid = choose_mask(m, a.valid, b.valid);
+  s.specular = choose_mask(m, a.specular, b.specular);
+  s.glossy = choose_mask(m, a.glossy, b.glossy);
   return s;
 }
 
@@ -129,12 +129,12 @@ DS_FN LightSample sample_light(LightTables t, uint light_table, uint light_count
     if (!any_lane(here)) continue;
     const uint at = i * k_light_words + k_light_parameters;
     const uint kind = as_uint(t.lights[i * k_light_words + k_light_kind]);
-#define DS_SAMPLE_LIGHT(name, number)              \
-  if (kind == number) {                            \
-    LightSample s = name##_sample(t, at, from, u); \
-    s.pdf = s.pdf * probability;                   \
-    result = choose(here, s, result);              \
-  }
+#  define DS_SAMPLE_LIGHT(name, number)              \
+    if (kind == number) {                            \
+      LightSample s = name##_sample(t, at, from, u); \
+      s.pdf = s.pdf * probability;                   \
+      result = choose(here, s, result);              \
+    }
     DS_LIGHTS(DS_SAMPLE_LIGHT)
   }
   return result;
@@ -161,8 +161,8 @@ DS_FN real3 escape_radiance(LightTables t, uint first, uint light_count, real3 d
     const uint kind = as_uint(t.lights[i * k_light_words + k_light_kind]);
     real light_pdf = (real)(0.0f);
     real3 radiance = splat((real)(0.0f));
-#define DS_ESCAPE(name, number) \
-  if (kind == number) radiance = name##_escape(t, at, direction, &light_pdf);
+#  define DS_ESCAPE(name, number) \
+    if (kind == number) radiance = name##_escape(t, at, direction, &light_pdf);
     DS_ESCAPE_LIGHTS(DS_ESCAPE)
     const real weight =
         choose(pdf < 0.0f, (real)(1.0f), power_heuristic(pdf, light_pdf * probability));

@@ -7,7 +7,6 @@
 
 /// Constants of a scene. Offsets count words in the buffer named.
 typedef struct {
-  float reach;  ///< greatest |coordinate| of the scene's bounds, metres
   uint light_count;
   uint first_escape_light;  ///< lights from here on are met by paths that leave the scene
   uint light_table;  ///< offset in tables: light_count cumulative selection probabilities, the last
@@ -15,8 +14,6 @@ typedef struct {
   uint filter_table;    ///< offset in tables: inverse cumulative pixel filter, k_filter_size + 1
                         ///< values
   uint material_words;  ///< words a row of materials takes
-  uint model_object;    ///< object id whose pixels are the mask
-  uint reserved;
 } SceneData;
 
 /// Constants of a picture: the camera and the engine settings.
@@ -38,7 +35,7 @@ typedef struct {
 } ViewData;
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(SceneData) == 8 * 4 && sizeof(ViewData) == 32 * 4, "no padding");
+static_assert(sizeof(SceneData) == 5 * 4 && sizeof(ViewData) == 32 * 4, "no padding");
 #endif
 
 enum {
@@ -51,6 +48,7 @@ enum {
   // set. Absent children are inside out.
   k_node_vectors = 8,
   k_node_children = 6,
+  k_root_bounds = 7,  ///< of the root: the scene's bounds, low x y z, high x y z
   // A leaf: corners p0.x, p0.y, p0.z, p1.x, ... p2.z of eight triangles, then their ids. Absent
   // ones are all zero.
   k_leaf_vectors = 10,
@@ -87,5 +85,6 @@ enum {
   k_film_sum = 0,           ///< 3: r, g, b
   k_film_compensation = 3,  ///< 3: what rounding has cut off (Neumaier 1974)
   k_film_rejected = 6,      ///< samples that were not finite or negative, as a float
-  k_film_planes = 7,
+  k_film_halves = 7,  ///< luminance of even samples minus that of odd ones: two independent halves
+  k_film_planes = 8,
 };

@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t k_max_pixels = std::uint64_t{1} << 28;
 constexpr const char* k_rejected_attribute = "dsbuild:rejectedSamples";
+constexpr const char* k_error_attribute = "dsbuild:relativeError";
 
 /// The pictures are small, and many processes share a machine: no threads of the library's own.
 void set_up_library() {
@@ -119,16 +120,17 @@ bool starts_with(std::span<const std::byte> bytes, std::string_view magic) {
                     [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
 }
 
-/// The count that `encode_film_exr` wrote beside the pixels.
-std::uint64_t rejected_samples(const OIIO::ImageSpec& spec, const std::string& name) {
-  const std::string text = spec.get_string_attribute(k_rejected_attribute);
-  std::uint64_t count = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+/// A number that `encode_film_exr` wrote beside the pixels.
+template <typename Number>
+Number film_number(const OIIO::ImageSpec& spec, const char* attribute, const std::string& name) {
+  const std::string text = spec.get_string_attribute(attribute);
+  Number number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size() || text.empty())
     fail(ErrorKind::asset,
-         "{}: no film of ours: wanted the attribute {} with a count, found \"{}\"", name,
-         k_rejected_attribute, text);
-  return count;
+         "{}: no film of ours: wanted the attribute {} with a number, found \"{}\"", name,
+         attribute, text);
+  return number;
 }
 
 /// An open reader on bytes in memory.
@@ -210,6 +212,8 @@ std::vector<std::byte> encode_film_exr(const Film& film) {
   OIIO::ImageSpec spec = exr_spec(film.width, film.height, {"R", "G", "B"});
   DS_ASSERT(film.rgb.size() * sizeof(float) == spec.image_bytes());
   spec.attribute(k_rejected_attribute, std::to_string(film.rejected_samples));
+  if (film.relative_error)  // the shortest text that reads back exactly
+    spec.attribute(k_error_attribute, fmt::format("{}", *film.relative_error));
   return encode("exr", spec, film.rgb.data());
 }
 
@@ -219,9 +223,11 @@ Film decode_film_exr(const std::vector<std::byte>& bytes, const std::string& nam
   if (decoded.channels != 3 || decoded.type != SampleType::float32)
     fail(ErrorKind::asset, "{}: no film of ours: wanted 3 channels of float, found {} of {}", name,
          decoded.channels, sample_type_name(decoded.type));
-  Film film{decoded.width, decoded.height,
-            std::vector<float>(decoded.samples.size() / sizeof(float)),
-            rejected_samples(memory.input().spec(), name)};
+  Film film{
+      decoded.width, decoded.height, std::vector<float>(decoded.samples.size() / sizeof(float)),
+      film_number<std::uint64_t>(memory.input().spec(), k_rejected_attribute, name), std::nullopt};
+  if (memory.input().spec().find_attribute(k_error_attribute) != nullptr)
+    film.relative_error = film_number<double>(memory.input().spec(), k_error_attribute, name);
   std::copy(decoded.samples.begin(), decoded.samples.end(),
             std::as_writable_bytes(std::span(film.rgb)).begin());
   return film;

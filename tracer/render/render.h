@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,10 @@ struct Film {
   int width = 0, height = 0;
   std::vector<float> rgb;
   std::uint64_t rejected_samples = 0;  ///< NaN, infinite or negative: counted as black
+  /// Estimated RMS error of the pixels' luminance over the mean luminance, from two independently
+  /// scrambled halves of each pixel's samples (render/film_error.h). 0 for a black film; nothing
+  /// for a single sample a pixel, which tells nothing of its error.
+  std::optional<double> relative_error{};
 };
 
 /// One ray a pixel, through its centre and the pinhole (no lens). Row 0 is the top.

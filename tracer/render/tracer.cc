@@ -3,6 +3,7 @@
 #include "tracer/device/opencl.h"
 #include "tracer/device/program_text.h"
 #include "tracer/device/scene_pack.h"
+#include "tracer/render/film_error.h"
 #include "tracer/render/images.h"
 #include "tracer/render/render.h"
 #include "tracer/render/view.h"
@@ -20,7 +21,6 @@ using Clock = std::chrono::steady_clock;
 /// A scene's tables in device memory.
 struct DeviceScene {
   Buffer nodes, leaves, triangles, materials, programs, lights, tables, data;
-  float reach = 0;
 };
 
 DeviceScene upload(const Device& device, const PackedScene& packed) {
@@ -33,7 +33,6 @@ DeviceScene upload(const Device& device, const PackedScene& packed) {
   s.lights = device.upload(packed.lights.words());
   s.tables = device.upload(packed.tables.words());
   s.data = device.upload(std::as_bytes(std::span(&packed.data, 1)));
-  s.reach = packed.data.reach;
   return s;
 }
 
@@ -56,6 +55,8 @@ Film film_from_sums(const std::vector<float>& sums, int width, int height, int s
     }
     film.rejected_samples += static_cast<std::uint64_t>(sums[kernels::k_film_rejected * plane + i]);
   }
+  const std::span<const float> halves(sums.data() + kernels::k_film_halves * plane, plane);
+  film.relative_error = relative_error(film.rgb, halves, spp);
   return film;
 }
 
@@ -146,8 +147,8 @@ Film Tracer::trace(const Camera& camera, const EngineSettings& engine,
   const std::size_t padded = std::size_t{view.tiles_x} * ((view.height + 7) / 8) * 64;
   const std::size_t items = round_up(padded / static_cast<std::size_t>(s.lanes), s.local_size);
   const std::size_t least =
-      s.local_size * std::max<std::size_t>(s.device.info().compute_units, 1) * 8;
-  std::size_t launch = round_up(std::min(items, least), s.local_size);
+      std::min(items, s.local_size * std::max<std::size_t>(s.device.info().compute_units, 1) * 8);
+  std::size_t launch = round_up(least, s.local_size);
   for (std::size_t begin = 0; begin < items;) {
     if (stop != nullptr && stop->load()) fail(ErrorKind::cancelled, "stopped");
     const std::size_t count = std::min(launch, items - begin);
@@ -198,10 +199,9 @@ Geometry Tracer::trace_geometry(const Camera& camera, int width, int height) {
   k.set(0, s.device_scene.nodes);
   k.set(1, s.device_scene.leaves);
   k.set(2, s.device_scene.triangles);
-  k.set(3, s.device_scene.reach);
-  k.set(4, view_buffer);
-  k.set(5, objects);
-  k.set(6, depths);
+  k.set(3, view_buffer);
+  k.set(4, objects);
+  k.set(5, depths);
   s.device.run(k, 0, round_up(pixels, s.local_size), s.local_size);
   Geometry geometry{width, height, std::vector<std::uint8_t>(pixels), std::vector<float>(pixels)};
   std::vector<std::uint32_t> ids(pixels);

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tracer/base/hash.h"
+#include "tracer/base/vec.h"
+#include "tracer/scene/mesh.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "tracer/base/hash.h"
-#include "tracer/base/vec.h"
-#include "tracer/scene/mesh.h"
-
 namespace ds {
 
-/// The value of a material's or texture's input: a constant, or the output of a texture of the same scene.
+/// The value of a material's or texture's input: a constant, or the output of a texture of the same
+/// scene.
 struct TextureRef {
   Vec3 constant;     ///< linear Rec.709; a scalar stands in all three
   int texture = -1;  ///< index into Scene::textures, or -1: constant
@@ -26,28 +27,33 @@ enum class ImageChannel { rgb, red, green, blue, alpha, mean, colored_mean };
 /// An image file and how it is read. Pixels are loaded by tracer/render; row 0 is the top.
 struct Image {
   std::filesystem::path file;
-  float gamma = 2.2f;  ///< linear = stored^gamma; 1 for HDR files (the reader refuses another value there)
+  float gamma =
+      2.2f;  ///< linear = stored^gamma; 1 for HDR files (the reader refuses another value there)
   float gain = 1.0f;
   ImageWrap wrap = ImageWrap::repeat;
   ImageFilter filter = ImageFilter::linear;
   ImageChannel channel = ImageChannel::rgb;
-  Hash128 content;  ///< of the file's bytes, or of the pixels where the reader made them
-  std::string made_from;  ///< what the reader made the pixels from, in words for `explain`; empty for a file
+  Hash128 content;        ///< of the file's bytes, or of the pixels where the reader made them
+  std::string made_from;  ///< what the reader made the pixels from, in words for `explain`; empty
+                          ///< for a file
   int width = 0, height = 0;
-  std::vector<float> rgb;  ///< width * height * 3, linear, after gamma and gain; filled by the reader for sky2 (empty file)
+  std::vector<float> rgb;  ///< width * height * 3, linear, after gamma and gain; filled by the
+                           ///< reader for sky2 (empty file)
 };
 
-/// A node of a texture graph; inputs always have lower indices. Types, inputs and numbers: scene/type_tables.h.
+/// A node of a texture graph; inputs always have lower indices. Types, inputs and numbers:
+/// scene/type_tables.h.
 struct Texture {
   std::string name;
   int type = 0;                    ///< row of texture_types()
   std::vector<TextureRef> inputs;  ///< in the row's order
   std::vector<float> numbers;      ///< in the row's order
   Mat4 world_to_texture;           ///< 3D mappings: texture point = world_to_texture * world point
-  /// 2D mappings: (s, t) = [a b c; d e f] (u, v, 1). (0, 0) is the image's top left corner, (1, 1) its bottom right;
-  /// texel (i, j) has its centre at ((i + 0.5) / width, (j + 0.5) / height). As LuxCore.
+  /// 2D mappings: (s, t) = [a b c; d e f] (u, v, 1). (0, 0) is the image's top left corner, (1, 1)
+  /// its bottom right; texel (i, j) has its centre at ((i + 0.5) / width, (j + 0.5) / height). As
+  /// LuxCore.
   float uv_transform[6] = {1, 0, 0, 0, 1, 0};
-  int image = -1;                  ///< index into Scene::images (imagemap)
+  int image = -1;  ///< index into Scene::images (imagemap)
 };
 
 struct Material {
@@ -57,39 +63,45 @@ struct Material {
   std::vector<float> numbers;      ///< in the row's order
   int children[2] = {-1, -1};      ///< mix: indices of the two materials, both lower than its own
   bool emits = false;
-  /// Emitted radiance, W/(m^2 sr), all of LuxCore's gains applied. From the front only: the side on which the
-  /// triangle's corners run counter-clockwise. As LuxCore.
+  /// Emitted radiance, W/(m^2 sr), all of LuxCore's gains applied. From the front only: the side on
+  /// which the triangle's corners run counter-clockwise. As LuxCore.
   TextureRef emission;
 };
 
 enum class LightKind { point, spot, sun, constant_infinite, infinite };
 
-/// A light that is no mesh. Direction and radiance are in world space. "W" stands for whatever unit the SDL file has:
-/// LuxCore's sun and sky are photometric (about 1e5 lm/m^2 on the ground).
+/// A light that is no mesh. Direction and radiance are in world space. "W" stands for whatever unit
+/// the SDL file has: LuxCore's sun and sky are photometric (about 1e5 lm/m^2 on the ground).
 struct Light {
   std::string name;
   LightKind kind = LightKind::point;
-  /// point: radiant intensity, W/sr. spot: radiant intensity on the axis, W/sr; LuxCore's intensity at the angle a from
-  /// the axis is color * falloff(cos a) / cos a (as if through a flat opening), falloff = clamp((cos a - cos_total) /
-  /// (cos_falloff - cos_total), 0, 1)^4. sun: radiance of the uniform disc, W/(m^2 sr). constant_infinite: radiance.
-  /// infinite: factor on the image, whose values are radiance.
+  /// point: radiant intensity, W/sr. spot: radiant intensity on the axis, W/sr; LuxCore's intensity
+  /// at the angle a from the axis is color * falloff(cos a) / cos a (as if through a flat opening),
+  /// falloff = clamp((cos a - cos_total) / (cos_falloff - cos_total), 0, 1)^4. sun: radiance of the
+  /// uniform disc, W/(m^2 sr). constant_infinite: radiance. infinite: factor on the image, whose
+  /// values are radiance.
   Vec3 color;
-  Vec3 position;        ///< point, spot
-  Vec3 direction;       ///< spot: unit, the way it shines; sun: unit, towards the sun
-  float cos_total = 0;  ///< spot: cosine beyond which there is no light; sun: cosine of the disc's angular radius
+  Vec3 position;   ///< point, spot
+  Vec3 direction;  ///< spot: unit, the way it shines; sun: unit, towards the sun
+  float cos_total =
+      0;  ///< spot: cosine beyond which there is no light; sun: cosine of the disc's angular radius
   float cos_falloff = 0;  ///< spot: cosine where the falloff starts, > cos_total
-  int image = -1;  ///< infinite: lat-long image in Scene::images (sky2 makes one of its own, with an empty file name)
-  /// infinite: orthogonal 3x3, no translation; it mirrors (determinant -1) for image files. In light space the image's
-  /// row 0 is at +z and its middle column at +x, columns to its left towards +y: with azimuth = atan2(y, x) and polar
-  /// angle = acos(z), u = 0.5 - azimuth / 2 pi and v = polar / pi. LuxCore has u = azimuth / 2 pi in its light space
-  /// (measured: u = 0 at +x, 0.25 at +y), which shows a panorama mirrored; the reader puts that mirror in here.
+  int image = -1;  ///< infinite: lat-long image in Scene::images (sky2 makes one of its own, with
+                   ///< an empty file name)
+  /// infinite: orthogonal 3x3, no translation; it mirrors (determinant -1) for image files. In
+  /// light space the image's row 0 is at +z and its middle column at +x, columns to its left
+  /// towards +y: with azimuth = atan2(y, x) and polar angle = acos(z), u = 0.5 - azimuth / 2 pi and
+  /// v = polar / pi. LuxCore has u = azimuth / 2 pi in its light space (measured: u = 0 at +x, 0.25
+  /// at +y), which shows a panorama mirrored; the reader puts that mirror in here.
   Mat4 light_to_world;
-  bool upper_hemisphere_only = false;  ///< a hint for sampling: the image's lower half stays visible
+  bool upper_hemisphere_only =
+      false;  ///< a hint for sampling: the image's lower half stays visible
 };
 
 struct Object {
   std::string name;
-  Mesh mesh;  ///< in world space: transformations are applied by the reader; flat-shaded where it has no normals
+  Mesh mesh;  ///< in world space: transformations are applied by the reader; flat-shaded where it
+              ///< has no normals
   int material = -1;
   std::uint32_t id = 0;  ///< as in the file, 0 where it has none; never k_model_object_id there
   bool camera_invisible = false;
@@ -98,7 +110,7 @@ struct Object {
 /// Tone mapping, LuxCore's film.imagepipeline. See render/develop.h for the formulas.
 struct ToneMap {
   enum class Kind { linear, reinhard02, autolinear } kind = Kind::linear;
-  float scale = 1;                                  ///< linear
+  float scale = 1;                                     ///< linear
   float prescale = 1, postscale = 1.2f, burn = 3.75f;  ///< reinhard02
   float gamma = 2.2f;
 };
@@ -118,8 +130,8 @@ struct Camera {
   Vec3d position{0.252, 0, 0};
   Vec3d target{};
   Vec3d up{0, 0, 1};
-  double fov_deg = 49;        ///< full angle over the longer image side, (0, 180)
-  double lens_radius_m = 0;   ///< 0: pinhole
+  double fov_deg = 49;              ///< full angle over the longer image side, (0, 180)
+  double lens_radius_m = 0;         ///< 0: pinhole
   double focus_distance_m = 0.252;  ///< along the viewing axis, > 0
 };
 

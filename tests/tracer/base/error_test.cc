@@ -27,7 +27,9 @@ TEST(DiagnosticsTest, reports_all_in_one_error) {
   }
 }
 
-TEST(AssertDeathTest, is_on_in_every_build) { EXPECT_DEATH(DS_ASSERT(1 + 1 == 3), "1 \\+ 1 == 3"); }
+TEST(AssertDeathTest, is_on_in_every_build) {
+  EXPECT_DEATH(DS_ASSERT(1 + 1 == 3), "1 \\+ 1 == 3");
+}
 
 }  // namespace
 }  // namespace ds

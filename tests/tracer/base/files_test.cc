@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/files.h"
 
+#include "tracer/base/error.h"
+
 #include <gtest/gtest.h>
 
 #include <iterator>
-
-#include "tracer/base/error.h"
 
 namespace ds {
 namespace {
 
 namespace fs = std::filesystem;
 
-auto entries(const fs::path& folder) { return std::distance(fs::directory_iterator(folder), {}); }
+auto entries(const fs::path& folder) {
+  return std::distance(fs::directory_iterator(folder), {});
+}
 
 TEST(FilesTest, writes_replaces_and_makes_parents) {
   const TemporaryFolder folder;

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/hash.h"
 
+#include "tracer/base/error.h"
+#include "tracer/base/files.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "tracer/base/error.h"
-#include "tracer/base/files.h"
-
 namespace ds {
 namespace {
 
-// Published vectors: XXH3-128 of no bytes (xxHash's own sanity table), SHA-256 of "abc" (FIPS 180-4).
+// Published vectors: XXH3-128 of no bytes (xxHash's own sanity table), SHA-256 of "abc" (FIPS
+// 180-4).
 TEST(HashTest, known_vectors) {
   EXPECT_EQ(hash_text("").hex(), "99aa06d3014798d86001c324468d497f");
-  EXPECT_EQ(sha256_hex(bytes_of("abc")), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256_hex(bytes_of("abc")),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
 TEST(HashTest, hex_round_trip_and_refusals) {

@@ -14,7 +14,10 @@ enum {
   infinite_height = 1,
   infinite_texels = 2,  ///< offset in tables: 3 floats a texel, row 0 at the pole +z of light space
   infinite_rows = 3,    ///< offset in tables: height + 1 cumulative row probabilities
-  infinite_columns = 4,  ///< offset in tables: for each row, width cumulative column probabilities
+  infinite_columns = 4,  ///< offset in tables: for each row, cumulative column probabilities,
+                         ///< filled up with 1 to whole blocks of k_column_block
+  infinite_blocks = 15,  ///< offset in tables: for each row, the last entry of each block
+  k_column_block = 16,   ///< entries: one cache line
   infinite_densities =
       5,  ///< offset in tables: for each cell, its pdf over (azimuth, polar angle), per radian^2
   infinite_to_light = 6,  ///< 9: rotation, row-major, world to light space
@@ -83,11 +86,19 @@ DS_FN LightSample infinite_sample(LightTables t, uint at, real3 from, real2 u) {
   DS_GLOBAL float* rows = t.tables + as_uint(p[infinite_rows]);
   DS_GLOBAL float* columns = t.tables + as_uint(p[infinite_columns]);
   const natural row = find_interval(rows, (natural)(0u), height + 1u, u.y);
-  const natural column = find_interval(columns, row * width, width, u.x);
+  // The search goes through the blocks' last entries, few enough to stay in a cache, then through
+  // one block: the same entry as a search of the whole row finds, for one line of memory.
+  const uint blocks = (width + k_column_block - 1) / k_column_block;
+  DS_GLOBAL float* block_ends = t.tables + as_uint(p[infinite_blocks]);
+  const natural row_start = row * (blocks * k_column_block);
+  const natural block = find_interval(block_ends, row * blocks, blocks, u.x) * (uint)k_column_block;
+  const natural found =
+      block + find_interval(columns, row_start + block, (uint)k_column_block, u.x);
+  const natural column = choose_natural(found < width, found, (natural)(width - 1u));
   const real row_low = interval_start(rows, (natural)(0u), row);
-  const real column_low = interval_start(columns, row * width, column);
+  const real column_low = interval_start(columns, row_start, column);
   const real row_share = load(rows, row) - row_low;
-  const real column_share = load(columns, row * width + column) - column_low;
+  const real column_share = load(columns, row_start + column) - column_low;
   const real fx = clamp01((u.x - column_low) / greater(column_share, (real)(1e-20f)));
   const real in_row = clamp01((u.y - row_low) / greater(row_share, (real)(1e-20f)));
   // The first row has its lower half only, the last its upper half.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A point that shines into a cone: full strength within the inner angle, falling to nothing at the
-// outer one with the fourth power of the linear ramp in the cosine (as LuxCore and pbrt-v2).
+// outer one with the fourth power of the linear ramp in the cosine. Intensity at angle a from the
+// axis is that on the axis over cos a, as LuxCore has it (measured: a plane square to the axis is
+// lit by cos^2 a, not cos^3 a), so that its files look the same here. Cosines below 1e-3 count as
+// 1e-3.
 #pragma once
 
 #include "tracer/kernels/lights/point.h"
@@ -17,7 +20,7 @@ DS_FN LightSample spot_sample(LightTables t, uint at, real3 from, real2 u) {
   const real cosine = -dot(s.wi, uniform3(p + spot_axis));
   const real ramp =
       clamp01((cosine - p[spot_cos_total]) / (p[spot_cos_falloff] - p[spot_cos_total]));
-  s.radiance = scale(s.radiance, square(square(ramp)));
+  s.radiance = scale(s.radiance, square(square(ramp)) / greater(cosine, (real)(1e-3f)));
   s.pdf = choose(ramp > 0.0f, s.pdf, (real)(0.0f));
   return s;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An image over (u, v): u to the right, v upwards (row 0 of the texels is the top, v = 1). Texels
-// stand in the tables, linear, three floats each.
+// An image over (u, v): u to the right, v downwards, (0, 0) its top left corner, as LuxCore has it.
+// Texels stand in the tables, linear, three floats each, row 0 at the top.
 #pragma once
 
 #include "tracer/kernels/texture.h"
@@ -45,7 +45,7 @@ DS_FN real3 imagemap_texel(TexturePoint at, DS_GLOBAL float* numbers, integer co
 
 DS_FN real3 imagemap_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const real3* inputs) {
   const real x = at.u * (float)as_uint(numbers[imagemap_width]);
-  const real y = (1.0f - at.v) * (float)as_uint(numbers[imagemap_height]);
+  const real y = at.v * (float)as_uint(numbers[imagemap_height]);
   if (as_uint(numbers[imagemap_linear]) == 0u) {
     return imagemap_texel(at, numbers, to_integer(floor(x)), to_integer(floor(y)));
   }

@@ -21,9 +21,9 @@ DS_FN real3 marble_colour(real t) {
   const real faint = absolute(t - 0.42f) * 5.0f;
   const real dark = square(clamp01(1.0f - vein));
   const real grey = square(clamp01(1.0f - faint));
-  const real3 pale = vec((real)(0.62f), (real)(0.61f), (real)(0.61f));
-  const real3 with_grey = lerp3(pale, splat((real)(0.47f)), grey);
-  return lerp3(with_grey, vec((real)(0.19f), (real)(0.19f), (real)(0.30f)), dark);
+  const real3 pale = vec((real)(0.87f), (real)(0.86f), (real)(0.87f));
+  const real3 with_grey = lerp3(pale, splat((real)(0.72f)), grey);
+  return lerp3(with_grey, vec((real)(0.29f), (real)(0.29f), (real)(0.46f)), dark);
 }
 
 DS_FN real3 marble_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const real3* inputs) {

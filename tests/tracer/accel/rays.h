@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tracer/accel/bvh.h"
+#include "tracer/device/opencl.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// Rays on the device against a tree, for tests of what they hit.
+namespace ds::rays {
+
+using Corners = std::array<Vec3, 3>;
+
+struct TestRay {
+  Vec3 origin, direction;
+  float t_max = 1e30f;
+};
+
+struct TestHit {
+  float t = 0, b1 = 0, b2 = 0;
+  std::uint32_t id = 0xffffffffu;
+  bool operator==(const TestHit&) const = default;
+  bool met() const { return id != 0xffffffffu; }
+};
+
+/// The tracer's nearest and any hit on the first CPU device.
+class Tree {
+ public:
+  explicit Tree(std::span<const Corners> triangles, BvhQuality quality = BvhQuality::medium);
+  std::vector<TestHit> nearest(std::span<const TestRay> rays) const;
+  std::vector<std::uint32_t> any(std::span<const TestRay> rays) const;
+
+ private:
+  Buffer upload_rays(std::span<const TestRay> rays, std::size_t padded) const;
+  Device device_;
+  Program program_;
+  Buffer nodes_, leaves_;
+};
+
+}  // namespace ds::rays

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every material of kernels/lists.h: what it samples is what its pdf says, no energy is made,
+// nothing is ever NaN.
+#include "tests/tracer/kernels/chi_square.h"
+#include "tests/tracer/kernels/materials.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace ds {
+namespace {
+
+using namespace kernels;
+using materials::Case;
+
+constexpr double k_pi = std::numbers::pi;
+constexpr std::array k_cosines = {1.0, 0.7, 0.3, 0.05, 0.001};
+constexpr std::array k_roughnesses = {1e-3f, 0.1f, 1.0f};
+
+std::string test_name(const testing::TestParamInfo<Case>& info) {
+  return std::string(info.param.name);
+}
+
+class Bsdf : public testing::TestWithParam<Case> {
+ protected:
+  BsdfSample sample(const std::vector<float>& p, Viewer v) {
+    return GetParam().sample(p.data(), v, {number(), number()}, {number(), number()});
+  }
+  BsdfValue evaluate(const std::vector<float>& p, Viewer v, real3 wi) {
+    return GetParam().evaluate(p.data(), v, wi);
+  }
+  float number() { return kernels::unit_interval(static_cast<std::uint32_t>(random_())); }
+  std::mt19937 random_{7};
+
+  /// Whether every lobe is a Dirac.
+  bool is_specular(const std::vector<float>& p) {
+    for (int i = 0; i < 100; ++i)
+      if (!sample(p, materials::viewer(0.5)).specular) return false;
+    return true;
+  }
+};
+
+/// Directions around an axis in rings that widen from it, so that a narrow lobe about it fills many
+/// cells.
+class Rings {
+ public:
+  static constexpr int k_rings = 26, k_sectors = 12;
+
+  Rings(real3 axis, double narrowest) : frame_(frame_around(axis)), narrowest_(narrowest) {}
+  double edge(int ring) const {
+    return ring == 0 ? 0.0
+                     : narrowest_ * std::pow(k_pi / narrowest_, (ring - 1.0) / (k_rings - 1.0));
+  }
+  int cell(real3 d) const {
+    const real3 l = to_local(frame_, d);
+    // From the chord: the arc cosine near 1 has few bits.
+    const real3 chord = sub(d, frame_.n);
+    const double angle = 2 * std::asin(std::min(1.0, 0.5 * std::sqrt(double{dot(chord, chord)})));
+    int ring = 0;
+    while (ring + 1 < k_rings && angle >= edge(ring + 1))
+      ++ring;
+    const double turn = (std::atan2(double{l.y}, double{l.x}) / k_pi + 1) / 2;
+    return ring * k_sectors + std::min(static_cast<int>(turn * k_sectors), k_sectors - 1);
+  }
+  /// The pdf's integral over a cell by a midpoint rule.
+  template <typename Pdf>
+  double integral(int cell, int steps, const Pdf& pdf) const {
+    const double low = edge(cell / k_sectors);
+    const double high = edge(cell / k_sectors + 1);
+    double sum = 0;
+    for (int i = 0; i < steps; ++i)
+      for (int j = 0; j < steps; ++j) {
+        const double angle = low + (high - low) * (i + 0.5) / steps;
+        const double azimuth = ((cell % k_sectors + (j + 0.5) / steps) / k_sectors * 2 - 1) * k_pi;
+        const double s = std::sin(angle);
+        const real3 d = to_world(frame_, vec(static_cast<float>(s * std::cos(azimuth)),
+                                             static_cast<float>(s * std::sin(azimuth)),
+                                             static_cast<float>(std::cos(angle))));
+        sum += pdf(unit(d)) * s;
+      }
+    return sum * (high - low) / steps * 2 * k_pi / k_sectors / steps;
+  }
+
+ private:
+  Frame frame_;
+  double narrowest_;
+};
+
+TEST_P(Bsdf, SamplesFollowThePdf) {
+  if (is_specular(materials::inputs(GetParam(), 0.1f))) GTEST_SKIP() << "only Dirac lobes";
+  const double limit = sidak(static_cast<double>(k_cosines.size() * k_roughnesses.size()));
+  constexpr int k_samples = 200000;
+  for (const float roughness : k_roughnesses)
+    for (const double cosine : k_cosines) {
+      // Across the plane of incidence the lobe is 2 alpha cosine wide: 2e-6 at the extreme, which
+      // no direction of floats resolves.
+      if (double{roughness} * cosine < 1e-5) continue;
+      const std::vector<float> p = materials::inputs(GetParam(), roughness);
+      const Viewer v = materials::viewer(cosine);
+      const Rings rings(vec(-v.wo.x, -v.wo.y, v.wo.z), 0.1 * double{roughness});
+      std::vector<double> counts(Rings::k_rings * Rings::k_sectors), expected(counts.size());
+      for (int i = 0; i < k_samples; ++i) {
+        const BsdfSample s = sample(p, v);
+        if (!s.valid || s.specular) continue;
+        ASSERT_GT(evaluate(p, v, s.wi).pdf, 0.0f);
+        counts[static_cast<std::size_t>(rings.cell(s.wi))] += 1;
+      }
+      double total = 0;
+      for (int cell = 0; cell < static_cast<int>(expected.size()); ++cell) {
+        double& e = expected[static_cast<std::size_t>(cell)];
+        e = rings.integral(cell, 40, [&](real3 wi) { return double{evaluate(p, v, wi).pdf}; });
+        total += e;
+        e *= k_samples;
+      }
+      EXPECT_LE(total, 1.01) << "roughness " << roughness << ", cosine " << cosine;
+      EXPECT_GT(chance_of_counts(counts, expected), limit)
+          << "roughness " << roughness << ", cosine " << cosine << ", pdf's integral " << total;
+    }
+}
+
+TEST_P(Bsdf, WeightIsValueOverPdf) {
+  for (const float roughness : k_roughnesses)
+    for (const double cosine : k_cosines) {
+      const std::vector<float> p = materials::inputs(GetParam(), roughness);
+      const Viewer v = materials::viewer(cosine);
+      for (int i = 0; i < 2000; ++i) {
+        const BsdfSample s = sample(p, v);
+        if (!s.valid) continue;
+        const BsdfValue at = evaluate(p, v, s.wi);
+        if (s.specular) {
+          EXPECT_EQ(at.pdf, 0.0f);
+          EXPECT_EQ(at.value.x, 0.0f);
+          continue;
+        }
+        // The half vector made from the rounded direction is off by 1e-7 over its length, about
+        // twice the cosine; a lobe of width alpha sees that as 1e-7 / (2 alpha cosine).
+        const double tolerance = 1e-4 + 3e-7 / (double{roughness} * cosine);
+        EXPECT_NEAR(double{at.pdf / s.pdf}, 1.0, tolerance);
+        EXPECT_NEAR(double{s.weight.x * s.pdf / at.value.x}, 1.0, tolerance);
+        EXPECT_NEAR(std::sqrt(double{dot(s.wi, s.wi)}), 1.0, 1e-5);
+      }
+    }
+}
+
+TEST_P(Bsdf, NothingIsNanOrNegativeForAnyInput) {
+  for (int trial = 0; trial < 3000; ++trial) {
+    const std::vector<float> p = materials::random_inputs(GetParam(), random_);
+    const double cosine = trial % 5 == 0   ? 1e-3
+                          : trial % 7 == 0 ? 1.0
+                                           : 1e-3 + 0.999 * double{number()};
+    const Viewer v = materials::viewer(cosine, trial % 2 == 0);
+    const auto sound = [](real3 c) {
+      for (const float x : {c.x, c.y, c.z})
+        if (!(x >= 0 && x <= 1e30f)) return false;
+      return true;
+    };
+    for (int i = 0; i < 20; ++i) {
+      // Corners of the square of numbers too.
+      const float ends[3] = {0.0f, 0.99999994f, number()};
+      const BsdfSample s = GetParam().sample(p.data(), v, {ends[i % 3], ends[i / 3 % 3]},
+                                             {i % 2 == 0 ? number() : ends[i % 3], number()});
+      ASSERT_TRUE(std::isfinite(s.wi.x + s.wi.y + s.wi.z)) << testing::PrintToString(p);
+      if (s.valid) {
+        ASSERT_TRUE(sound(s.weight))
+            << testing::PrintToString(p) << " cosine " << cosine << " weight " << s.weight.x;
+        ASSERT_TRUE(s.pdf >= 0 && s.eta_scale > 0);
+        ASSERT_NEAR(std::sqrt(double{dot(s.wi, s.wi)}), 1.0, 2e-3);
+      }
+      const real3 wi =
+          unit(vec(number() - 0.5f, number() - 0.5f, i % 4 == 0 ? 1e-7f : number() - 0.3f));
+      const BsdfValue at = evaluate(p, v, wi);
+      ASSERT_TRUE(sound(at.value) && at.pdf >= 0 && at.pdf <= 1e30f)
+          << testing::PrintToString(p) << " value " << at.value.x;
+    }
+  }
+}
+
+TEST_P(Bsdf, MakesNoEnergy) {
+  for (const float roughness : {0.0f, 1e-4f, 0.1f, 1.0f})
+    for (const double degrees : {0.0, 45.0, 80.0, 89.9})
+      for (const bool outside : {true, false}) {
+        const std::vector<float> p = materials::white_inputs(GetParam(), roughness);
+        const Viewer v = materials::viewer(std::cos(degrees * k_pi / 180), outside);
+        constexpr int k_samples = 40000;
+        double sum = 0, squares = 0;
+        for (int i = 0; i < k_samples; ++i) {
+          const BsdfSample s = sample(p, v);
+          // Radiance over the square of the index is what is kept (Veach 1997, 5.2).
+          const double w = s.valid ? double{s.weight.x / s.eta_scale} : 0.0;
+          sum += w;
+          squares += w * w;
+        }
+        const double mean = sum / k_samples;
+        const double error =
+            std::sqrt(std::max(0.0, squares / k_samples - mean * mean) / k_samples);
+        EXPECT_LE(mean, 1 + 3 * error + 1e-5)
+            << "roughness " << roughness << ", " << degrees << " degrees";
+        EXPECT_GT(mean, 0.05) << "roughness " << roughness << ", " << degrees << " degrees";
+        if (GetParam().name == "matte" || GetParam().name == "mirror" ||
+            GetParam().name == "glass") {
+          EXPECT_NEAR(mean, 1, 1e-5);
+        }
+      }
+}
+
+TEST_P(Bsdf, IsReciprocal) {
+  for (int trial = 0; trial < 5000; ++trial) {
+    std::vector<float> p = materials::inputs(GetParam(), trial % 2 == 0 ? 0.1f : 0.6f);
+    Viewer a = materials::viewer(0.02 + 0.98 * double{number()});
+    const real3 wi = unit(vec(number() - 0.5f, number() - 0.5f, 0.01f + number()));
+    Viewer b = a;
+    b.wo = wi;
+    const double there = double{evaluate(p, a, wi).value.y} / double{wi.z};
+    const double back = double{evaluate(p, b, a.wo).value.y} / double{a.wo.z};
+    EXPECT_NEAR(there, back, 1e-4 * (there + back) + 1e-7);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Bsdf, testing::ValuesIn(materials::all()), test_name);
+
+TEST(Fresnel, Dielectric) {
+  float cos_t = 0;
+  EXPECT_NEAR(dielectric_fresnel(1.5f, 1, &cos_t), 0.04, 1e-6);
+  EXPECT_NEAR(dielectric_fresnel(1.5f, 0, &cos_t), 1, 1e-6);
+  EXPECT_NEAR(dielectric_fresnel(1, 0.3f, &cos_t), 0, 1e-12);  // no boundary
+  // Snell: sin 60 / 1.5.
+  dielectric_fresnel(1.5f, 0.5f, &cos_t);
+  EXPECT_NEAR(double{cos_t}, std::sqrt(1 - 0.75 / 2.25), 1e-6);
+  // Total reflection beyond asin(1 / 1.5) = 41.8 degrees.
+  EXPECT_EQ(dielectric_fresnel(1 / 1.5f, static_cast<float>(std::cos(42 * k_pi / 180)), &cos_t), 1);
+  EXPECT_EQ(cos_t, 0);
+  EXPECT_LT(dielectric_fresnel(1 / 1.5f, static_cast<float>(std::cos(41 * k_pi / 180)), &cos_t),
+            0.7f);
+  // Brewster's angle: only one polarisation is left.
+  const double brewster = std::atan(1.5);
+  const double rs = (std::cos(brewster) - 1.5 * std::sin(brewster)) /
+                    (std::cos(brewster) + 1.5 * std::sin(brewster));
+  EXPECT_NEAR(dielectric_fresnel(1.5f, static_cast<float>(std::cos(brewster)), &cos_t), rs * rs / 2,
+              1e-6);
+}
+
+TEST(Fresnel, ConductorWithoutAbsorptionIsADielectric) {
+  for (double cosine = 0; cosine <= 1; cosine += 0.01) {
+    float cos_t = 0;
+    const auto c = static_cast<float>(cosine);
+    EXPECT_NEAR(conductor_fresnel(1.5f, 0, c), dielectric_fresnel(1.5f, c, &cos_t), 2e-6) << cosine;
+  }
+}
+
+TEST(Fresnel, ConductorAtNormalIncidence) {
+  // ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2)
+  for (const auto& [n, k] :
+       {std::pair{0.2f, 3.9f}, std::pair{1.37f, 7.6f}, std::pair{0.0f, 3.0f}}) {
+    const double expected =
+        ((n - 1.0) * (n - 1.0) + double{k * k}) / ((n + 1.0) * (n + 1.0) + double{k * k});
+    EXPECT_NEAR(conductor_fresnel(n, k, 1), expected, 1e-5);
+    EXPECT_NEAR(conductor_fresnel(n, k, 0), 1, 1e-6);
+  }
+}
+
+TEST(Glass, TheRadianceScalesOfBothSidesCancel) {
+  const std::vector<Case> all = materials::all();
+  const Case glass =
+      *std::find_if(all.begin(), all.end(), [](const Case& c) { return c.name == "glass"; });
+  const std::vector<float> p = materials::inputs(glass, 0);
+  const Viewer out = materials::viewer(0.8, true);
+  const BsdfSample in = glass.sample(p.data(), out, {0.5f, 0.5f}, {0.9f, 0});
+  ASSERT_LT(in.wi.z, 0);
+  EXPECT_NEAR(in.eta_scale, 1 / 2.25, 1e-6);
+  Viewer inside;
+  inside.wo = negate(in.wi);
+  inside.outside = false;
+  const BsdfSample back = glass.sample(p.data(), inside, {0.5f, 0.5f}, {0.9f, 0});
+  EXPECT_NEAR(in.eta_scale * back.eta_scale, 1, 1e-6);
+}
+
+}  // namespace
+}  // namespace ds

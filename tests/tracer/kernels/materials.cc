@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/tracer/kernels/materials.h"
+
+#include "tracer/kernels/lists.h"
+
+#include <cmath>
+
+namespace ds::materials {
+namespace {
+
+using namespace kernels;
+
+// Stand-ins for the one row of the list that has no BSDF.
+BsdfValue mix_evaluate(const float*, Viewer, real3) {
+  return no_value();
+}
+BsdfSample mix_sample(const float*, Viewer, real2, real2) {
+  return no_sample();
+}
+
+bool is_roughness(std::string_view name) {
+  return name.ends_with("roughness");
+}
+
+/// Greatest value an input may sensibly take; the least is 0 but for indices of refraction.
+float greatest(std::string_view name) {
+  if (name == "n" || name == "k" || name == "ka") return 10;
+  if (name == "d" || name == "index" || name.ends_with("ior")) return 3;
+  return 1;
+}
+float least(std::string_view name) {
+  if (name.ends_with("ior")) return 1;
+  return 0;
+}
+
+template <typename Value>
+std::vector<float> fill(const Case& material, const Value& value) {
+  std::vector<float> p;
+  for (const InputType& input : material.type->inputs)
+    for (int i = 0; i < input.width; ++i)
+      p.push_back(value(input));
+  return p;
+}
+
+}  // namespace
+
+std::vector<Case> all() {
+  std::vector<Case> cases;
+#define DS_CASE(sdl_name, prefix, PREFIX) \
+  cases.push_back({sdl_name, prefix##_evaluate, prefix##_sample, &material_types()[cases.size()]});
+  DS_ALL_MATERIALS(DS_CASE)
+#undef DS_CASE
+  std::erase_if(cases, [](const Case& c) { return c.name == "mix"; });
+  return cases;
+}
+
+std::vector<float> inputs(const Case& material, float roughness) {
+  return fill(material, [&](const InputType& input) {
+    return is_roughness(input.name) ? roughness : input.default_value;
+  });
+}
+
+std::vector<float> white_inputs(const Case& material, float roughness) {
+  return fill(material, [&](const InputType& input) {
+    if (is_roughness(input.name)) return roughness;
+    const bool reflectance =
+        input.width == 3 && input.name.size() == 2 && input.name[0] == 'k' && input.name != "ka";
+    return reflectance ? 1.0f : input.default_value;
+  });
+}
+
+std::vector<float> random_inputs(const Case& material, std::mt19937& random) {
+  std::uniform_real_distribution<float> u(0, 1);
+  return fill(material, [&](const InputType& input) {
+    const float low = least(input.name);
+    const float high = greatest(input.name);
+    const float choice = u(random);
+    if (choice < 0.15f) return low;
+    if (choice < 0.3f) return high;
+    if (choice < 0.4f && low == 0) return 1e-9f;
+    return low + (high - low) * u(random);
+  });
+}
+
+Viewer viewer(double cosine, bool outside) {
+  const double sine = std::sqrt(1 - cosine * cosine);
+  Viewer v;
+  v.wo = vec(static_cast<float>(sine * std::cos(0.7)), static_cast<float>(sine * std::sin(0.7)),
+             static_cast<float>(cosine));
+  v.outside = outside;
+  return v;
+}
+
+}  // namespace ds::materials

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tracer/kernels/all_nodes.h"
+#include "tracer/scene/type_tables.h"
+
+#include <ostream>
+#include <random>
+#include <string_view>
+#include <vector>
+
+/// The materials of kernels/lists.h as C++ functions, one lane wide.
+namespace ds::materials {
+
+struct Case {
+  std::string_view name;
+  kernels::BsdfValue (*evaluate)(const float* p, kernels::Viewer viewer, kernels::real3 wi);
+  kernels::BsdfSample (*sample)(const float* p, kernels::Viewer viewer, kernels::real2 u,
+                                kernels::real2 lobe);
+  const NodeType* type;
+};
+/// How GoogleTest prints one.
+inline void PrintTo(const Case& material, std::ostream* out) {
+  *out << material.name;
+}
+
+/// All but mix, which is resolved to its parts before a BSDF is asked.
+std::vector<Case> all();
+
+/// The table's defaults in the layout the functions take, with every roughness set to `roughness`.
+std::vector<float> inputs(const Case& material, float roughness);
+/// All reflectances and transmittances (inputs named k?, three wide, but metal's k) at 1 besides.
+std::vector<float> white_inputs(const Case& material, float roughness);
+/// Anything a file may say, ends of the ranges included.
+std::vector<float> random_inputs(const Case& material, std::mt19937& random);
+
+/// A viewer at this cosine of the angle to the normal.
+kernels::Viewer viewer(double cosine, bool outside = true);
+
+}  // namespace ds::materials

@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every texture: ranges, known values, and the stack machine that runs graphs of them.
+#include "tracer/kernels/lists.h"
+
+// The scene's own list of textures that a program is made with; here all of them, numbered as their
+// rows.
+#define DS_ROW(sdl_name, prefix, PREFIX) row_##prefix,
+enum { DS_ALL_TEXTURES(DS_ROW) row_count };
+#define DS_ROW_CASE(sdl_name, prefix, PREFIX) \
+  DS_TEXTURE_CASE(prefix, static_cast<int>(row_##prefix))
+#define DS_TEXTURES(X) DS_ALL_TEXTURES(DS_ROW_CASE)
+#define DS_TEXTURE_STACK 16
+#include "tests/render/pictures.h"
+#include "tracer/base/error.h"
+#include "tracer/device/texture_code.h"
+#include "tracer/kernels/all_nodes.h"
+#include "tracer/scene/type_tables.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace ds {
+namespace {
+
+using namespace kernels;
+
+TexturePoint at(float x, float y, float z) {
+  return {vec(x, y, z), 0, 0, nullptr};
+}
+
+/// The first input of material 0 at a point, by its texture program.
+real3 run(const Scene& scene, SurfacePoint where) {
+  const TextureCode code = texture_code(scene, scene.materials[0]);
+  std::vector<float> words, tables;
+  std::vector<std::uint32_t> offsets;
+  for (const Image& image : scene.images) {
+    offsets.push_back(static_cast<std::uint32_t>(tables.size()));
+    tables.insert(tables.end(), image.rgb.begin(), image.rgb.end());
+  }
+  std::vector<std::uint32_t> raw = code.words;
+  for (const std::size_t i : code.image_words)
+    raw[i] = offsets[raw[i]];
+  for (const std::uint32_t word : raw)
+    words.push_back(std::bit_cast<float>(word));
+  float inputs[64] = {-1, -1, -1, -1};
+  run_texture_program(words.data(), tables.data(), where, true, inputs);
+  EXPECT_EQ(inputs[3], -1);  // nothing but the input is written
+  return vec(inputs[0], inputs[1], inputs[2]);
+}
+
+/// A matte material whose kd is a graph; `add(scene)` makes its textures and returns the last one's
+/// index.
+template <typename Add>
+real3 value_of(const Add& add, SurfacePoint where = {vec(0, 0, 0), 0, 0}) {
+  Scene scene;
+  pictures::add_material(scene, "matte");
+  scene.materials[0].inputs[0] = {{}, add(scene)};
+  return run(scene, where);
+}
+
+/// A texture whose inputs are constants.
+int constant_texture(Scene& scene, std::string_view type, const std::vector<Vec3>& inputs) {
+  const int index = pictures::add_texture(scene, type, {});
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    scene.textures.back().inputs[i] = {inputs[i], -1};
+  return index;
+}
+
+void expect_color(real3 got, Vec3 want) {
+  EXPECT_FLOAT_EQ(got.x, want.x);
+  EXPECT_FLOAT_EQ(got.y, want.y);
+  EXPECT_FLOAT_EQ(got.z, want.z);
+}
+
+TEST(TextureProgram, Arithmetic) {
+  const Vec3 a{0.5f, 2, 3}, b{4, 0.25f, 7};
+  expect_color(value_of([&](Scene& s) {
+                 return constant_texture(s, "scale", {a, b});
+               }),
+               {2, 0.5f, 21});
+  expect_color(value_of([&](Scene& s) {
+                 return constant_texture(s, "add", {a, b});
+               }),
+               {4.5f, 2.25f, 10});
+  expect_color(value_of([&](Scene& s) {
+                 return constant_texture(s, "subtract", {a, b});
+               }),
+               {-3.5f, 1.75f, -4});
+  const auto mix = [&](float amount) {
+    return value_of([&](Scene& s) {
+      return constant_texture(s, "mix", {{amount, amount, amount}, a, b});
+    });
+  };
+  expect_color(mix(0), a);
+  expect_color(mix(1), b);
+  expect_color(mix(0.5f), {2.25f, 1.125f, 5});
+  expect_color(mix(7), b);
+  expect_color(mix(-7), a);
+}
+
+TEST(TextureProgram, Graph) {
+  // (a + b) * (a - b) + a, where the same texture stands in two places.
+  const Vec3 a{3, 5, 0.5f}, b{1, 2, 4};
+  expect_color(value_of([&](Scene& s) {
+                 const int sum = constant_texture(s, "add", {a, b});
+                 const int difference = constant_texture(s, "subtract", {a, b});
+                 const int product = pictures::add_texture(s, "scale", {{}, sum});
+                 s.textures.back().inputs[1] = {{}, difference};
+                 pictures::add_texture(s, "add", {{}, product});
+                 s.textures.back().inputs[1] = {a, -1};
+                 return static_cast<int>(s.textures.size()) - 1;
+               }),
+               {11, 26, -15.25f});
+}
+
+TEST(TextureProgram, EveryTextureLeavesOneValue) {
+  for (const NodeType& type : texture_types()) {
+    Scene scene;
+    Image image;
+    image.width = image.height = 1;
+    image.rgb = {0.25f, 0.5f, 0.75f};
+    scene.images.push_back(image);
+    pictures::add_material(scene, "glossy2");
+    // Two inputs, so that a value left over or missing would shift the second.
+    scene.materials[0].inputs[0] = {
+        {}, pictures::add_texture(scene, type.name, {{0.3f, 0.3f, 0.3f}, -1})};
+    scene.materials[0].inputs[1] = {{}, constant_texture(scene, "add", {{1, 2, 3}, {0, 0, 0}})};
+    const TextureCode code = texture_code(scene, scene.materials[0]);
+    std::vector<float> words;
+    std::vector<std::uint32_t> raw = code.words;
+    for (const std::size_t i : code.image_words)
+      raw[i] = 0;
+    for (const std::uint32_t word : raw)
+      words.push_back(std::bit_cast<float>(word));
+    float inputs[64] = {};
+    run_texture_program(words.data(), image.rgb.data(), {vec(0.1f, 0.2f, 0.3f), 0.4f, 0.6f}, true,
+                        inputs);
+    EXPECT_TRUE(std::isfinite(inputs[0])) << type.name;
+    expect_color(vec(inputs[3], inputs[4], inputs[5]), {1, 2, 3});
+    EXPECT_LE(code.stack, 2 + static_cast<int>(type.inputs.size())) << type.name;
+    // Where the lane is not meant, nothing is written.
+    float untouched[64] = {};
+    run_texture_program(words.data(), image.rgb.data(), {vec(0, 0, 0), 0, 0}, false, untouched);
+    EXPECT_EQ(untouched[3], 0);
+  }
+}
+
+TEST(TextureProgram, TooDeepAGraphIsAnError) {
+  const auto depth = [](int levels) {
+    return value_of([&](Scene& s) {
+      int last = constant_texture(s, "add", {{1, 1, 1}, {1, 1, 1}});
+      for (int i = 0; i < levels; ++i) {
+        constant_texture(s, "add", {{1, 1, 1}, {}});
+        s.textures.back().inputs[1] = {{}, last};
+        last = static_cast<int>(s.textures.size()) - 1;
+      }
+      return last;
+    });
+  };
+  EXPECT_EQ(depth(14).x, 16);
+  EXPECT_THROW(depth(15), Error);
+}
+
+TEST(Checkerboard, KnownCells) {
+  const real3 colours[2] = {vec(1, 1, 1), vec(0, 0, 0)};
+  const auto even = [&](float x, float y, float z) {
+    return checkerboard3d_evaluate(at(x, y, z), nullptr, colours).x == 1;
+  };
+  EXPECT_TRUE(even(0.5f, 0.5f, 0.5f));
+  EXPECT_FALSE(even(1.5f, 0.5f, 0.5f));
+  EXPECT_TRUE(even(1.5f, 1.5f, 0.5f));
+  EXPECT_FALSE(even(1.5f, 1.5f, 1.5f));
+  EXPECT_FALSE(even(-0.5f, 0.5f, 0.5f));
+  EXPECT_TRUE(even(-0.5f, -0.5f, 0.5f));
+  EXPECT_FALSE(even(-0.5f, -0.5f, -0.5f));
+  EXPECT_TRUE(even(-0.0f, 0, 0));
+}
+
+TEST(Checkerboard, TheMappingIsApplied) {
+  Scene unused;
+  const auto value = [](Vec3 p) {
+    return value_of(
+               [](Scene& s) {
+                 const int index = constant_texture(s, "checkerboard3d", {{1, 1, 1}, {0, 0, 0}});
+                 s.textures.back().world_to_texture =
+                     Mat4{{10, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
+                 return index;
+               },
+               {vec(p.x, p.y, p.z), 0, 0})
+        .x;
+  };
+  EXPECT_EQ(value({0, 0.5f, 0.5f}), 1);
+  EXPECT_EQ(value({0.04f, 0.5f, 0.5f}), 1);
+  EXPECT_EQ(value({0.06f, 0.5f, 0.5f}), 0);
+  EXPECT_EQ(value({-0.06f, 0.5f, 0.5f}), 0);
+}
+
+TEST(Noise, IsBoundedAndHasMeanZeroAndNoJumps) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> u(-1000, 1000);
+  double sum = 0, squares = 0;
+  for (int i = 0; i < 200000; ++i) {
+    const real3 p = vec(u(random), u(random), u(random));
+    const float n = gradient_noise(p);
+    ASSERT_TRUE(n >= -1.0001f && n <= 1.0001f);
+    sum += double{n};
+    squares += double{n} * double{n};
+    ASSERT_LT(std::fabs(gradient_noise(vec(p.x + 1e-4f, p.y, p.z)) - n), 1e-3f);
+  }
+  EXPECT_NEAR(sum / 200000, 0, 4e-3);
+  EXPECT_GT(squares / 200000, 0.03);
+  for (const float x : {-3.0f, 0.0f, 5.0f})
+    EXPECT_EQ(gradient_noise(vec(x, 2, -7)), 0);
+}
+
+TEST(Noise, HasNoPeriodOf256) {
+  int same = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const float x = 0.37f + 0.71f * static_cast<float>(i);
+    if (gradient_noise(vec(x, 0.4f, 0.6f)) == gradient_noise(vec(x + 256, 0.4f, 0.6f))) ++same;
+  }
+  EXPECT_LT(same, 20);
+}
+
+TEST(MarbleAndFbm, AreFiniteForLargeCoordinates) {
+  const float marble[] = {8, 0.5f, 1, 0.2f};
+  const float fbm[] = {8, 0.5f};
+  std::mt19937 random(2);
+  for (const float size : {1.0f, 1e3f, 1e6f, 1e7f}) {
+    std::uniform_real_distribution<float> u(-size, size);
+    for (int i = 0; i < 3000; ++i) {
+      const TexturePoint p = at(u(random), u(random), i % 10 == 0 ? 0 : u(random));
+      ASSERT_LE(std::fabs(fbm_evaluate(p, fbm, nullptr).x), 2) << size;
+      const real3 stone = marble_evaluate(p, marble, nullptr);
+      for (const float c : {stone.x, stone.y, stone.z})
+        ASSERT_TRUE(c >= 0 && c <= 1) << size;
+    }
+  }
+}
+
+TEST(Marble, TheTurningPointsOfTheSineAreInsideItsColours) {
+  // LuxCore reads beyond its table of colours where the sine is 1.
+  for (int i = 0; i <= 1000; ++i) {
+    const real3 c = marble_colour(static_cast<float>(i) / 1000);
+    ASSERT_TRUE(c.x > 0 && c.x < 1 && c.z > 0 && c.z < 1);
+  }
+  const float numbers[] = {1, 0.5f, 1, 0};  // no noise: the sine of y alone
+  for (const double y : {std::acos(0.0), 5 * std::acos(0.0), -std::acos(0.0)})
+    ASSERT_TRUE(
+        std::isfinite(marble_evaluate(at(0, static_cast<float>(y), 0), numbers, nullptr).x));
+}
+
+TEST(Fbm, IsNoiseForOneOctave) {
+  const float numbers[] = {1, 0.5f};
+  const real3 p = vec(1.3f, -2.4f, 0.8f);
+  EXPECT_EQ(fbm_evaluate({p, 0, 0, nullptr}, numbers, nullptr).x, gradient_noise(p));
+}
+
+/// A 3 x 2 image of red values 0 .. 5, top row first.
+float texel(ImageWrap wrap, ImageFilter filter, float u, float v) {
+  return value_of(
+             [&](Scene& s) {
+               Image image;
+               image.width = 3;
+               image.height = 2;
+               image.wrap = wrap;
+               image.filter = filter;
+               for (int i = 0; i < 6; ++i)
+                 image.rgb.insert(image.rgb.end(), {static_cast<float>(i), 0.5f, 0.5f});
+               s.images.push_back(image);
+               return pictures::add_texture(s, "imagemap", {});
+             },
+             {vec(0, 0, 0), u, v})
+      .x;
+}
+
+TEST(Imagemap, TexelsStandWhereTheSceneSays) {
+  // scene.h: (0, 0) is the top left corner; texel (i, j) has its centre at ((i + 0.5) / width, (j +
+  // 0.5) / height).
+  for (const ImageFilter filter : {ImageFilter::nearest, ImageFilter::linear})
+    for (int i = 0; i < 6; ++i)
+      EXPECT_NEAR(texel(ImageWrap::repeat, filter, (static_cast<float>(i % 3) + 0.5f) / 3,
+                        (static_cast<float>(i / 3) + 0.5f) / 2),
+                  i, 1e-5);
+}
+
+TEST(Imagemap, LinearIsBetweenTexels) {
+  EXPECT_NEAR(texel(ImageWrap::clamp, ImageFilter::linear, 1.0f / 3, 0.25f), 0.5, 1e-5);
+  EXPECT_NEAR(texel(ImageWrap::clamp, ImageFilter::linear, 0.5f, 0.5f), 2.5, 1e-5);
+  EXPECT_NEAR(texel(ImageWrap::repeat, ImageFilter::linear, 0, 0.25f), 1,
+              1e-5);  // half of texels 2 and 0
+}
+
+TEST(Imagemap, WrapModes) {
+  const ImageFilter nearest = ImageFilter::nearest;
+  EXPECT_EQ(texel(ImageWrap::repeat, nearest, 1.1f, 0.1f), 0);
+  EXPECT_EQ(texel(ImageWrap::repeat, nearest, -0.1f, 0.1f), 2);
+  EXPECT_EQ(texel(ImageWrap::repeat, nearest, 0.1f, -0.1f), 3);
+  EXPECT_EQ(texel(ImageWrap::repeat, nearest, 0.1f, 7.1f), 0);
+  EXPECT_EQ(texel(ImageWrap::clamp, nearest, 1.1f, 0.1f), 2);
+  EXPECT_EQ(texel(ImageWrap::clamp, nearest, -5, 3), 3);
+  EXPECT_EQ(texel(ImageWrap::black, nearest, 1.1f, 0.1f), 0);
+  EXPECT_EQ(texel(ImageWrap::black, nearest, 0.9f, 0.9f), 5);
+  EXPECT_EQ(texel(ImageWrap::white, nearest, 0.5f, -0.1f), 1);
+  EXPECT_EQ(texel(ImageWrap::white, nearest, 0.9f, 0.9f), 5);
+}
+
+TEST(Imagemap, LargeCoordinatesStayInside) {
+  for (const ImageWrap wrap :
+       {ImageWrap::repeat, ImageWrap::clamp, ImageWrap::black, ImageWrap::white})
+    for (const ImageFilter filter : {ImageFilter::nearest, ImageFilter::linear})
+      for (const float u : {1e6f, -1e6f, 1e8f, -1e8f}) {
+        const float value = texel(wrap, filter, u, -u);
+        EXPECT_TRUE(value >= 0 && value <= 5);
+      }
+}
+
+TEST(Imagemap, TheMappingIsApplied) {
+  const float value = [] {
+    return value_of(
+               [](Scene& s) {
+                 Image image;
+                 image.width = 2;
+                 image.height = 1;
+                 image.filter = ImageFilter::nearest;
+                 image.rgb = {1, 1, 1, 2, 2, 2};
+                 s.images.push_back(image);
+                 const int index = pictures::add_texture(s, "imagemap", {});
+                 const float swapped[6] = {0, 1, 0, 1, 0, 0};  // s = v, t = u
+                 std::copy(std::begin(swapped), std::end(swapped),
+                           std::begin(s.textures.back().uv_transform));
+                 return index;
+               },
+               {vec(0, 0, 0), 0.1f, 0.9f})
+        .x;
+  }();
+  EXPECT_EQ(value, 2);
+}
+
+}  // namespace
+}  // namespace ds
