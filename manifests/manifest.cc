@@ -59,6 +59,7 @@ json to_json_value(const ImageRecord& image) {
           {"focus_distance_m", image.focus_distance_m},
           {"tone_map_scale", image.tone_map_scale},
           {"rejected_samples", image.rejected_samples},
+          {"relative_error", image.relative_error ? json(*image.relative_error) : json()},
           {"render_key", image.render_key.hex()},
           {"files_key", image.files_key.hex()},
           {"parts",

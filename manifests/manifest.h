@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,6 +50,9 @@ struct ImageRecord {
   double lens_radius_m = 0, focus_distance_m = 0;
   double tone_map_scale = 1;  ///< the factor used (autolinear's differs from image to image)
   std::uint64_t rejected_samples = 0;
+  /// Estimated RMS error of the linear picture's luminance over its mean, from the picture's own
+  /// samples; null in the file where one sample a pixel tells nothing of it.
+  std::optional<double> relative_error{};
   Hash128 render_key, files_key;
   std::array<Hash128, 5> parts{};  ///< model, material, environment, camera, engine
 };

@@ -55,6 +55,12 @@ class Fields {
       wrong(name, "a number", *value);
     }
   }
+  void optional_number(const char* name, std::optional<double>& to) {
+    const json* value = find(name);
+    if (value == nullptr || value->is_null()) return;
+    to.emplace();
+    number(name, *to);
+  }
   void hash(const char* name, Hash128& to) {
     std::string hex;
     text(name, hex);
@@ -169,6 +175,7 @@ ImageRecord image_from(const std::string& line, const SourcePlace& place,
   fields.number("focus_distance_m", image.focus_distance_m);
   fields.number("tone_map_scale", image.tone_map_scale);
   fields.count("rejected_samples", image.rejected_samples);
+  fields.optional_number("relative_error", image.relative_error);
   fields.hash("render_key", image.render_key);
   fields.hash("files_key", image.files_key);
   if (const json* parts = fields.find("parts")) read_parts(*parts, place, diagnostics, image);

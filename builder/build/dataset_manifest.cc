@@ -104,6 +104,7 @@ ImageRecord image_record(const PlannedImage& image, Database& database) {
     if (output.kind == "image") {
       record.tone_map_scale = product->tone_map_scale;
       record.rejected_samples = product->rejected_samples;
+      record.relative_error = product->relative_error;
     }
   }
   return record;

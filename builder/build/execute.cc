@@ -2,6 +2,8 @@
 #include "builder/build/execute.h"
 
 #include "builder/build/dataset_manifest.h"
+#include "builder/build/host.h"
+#include "builder/build/killed_builds.h"
 #include "tracer/base/error.h"
 
 #include <algorithm>
@@ -13,7 +15,6 @@
 #include <thread>
 #include <tuple>
 #include <unistd.h>
-
 namespace ds {
 namespace {
 
@@ -21,11 +22,6 @@ namespace fs = std::filesystem;
 
 /// How long to sleep where every image left is being made by other processes.
 constexpr std::chrono::milliseconds k_claim_poll{50};
-
-std::string host_name() {
-  char name[256] = {};
-  return ::gethostname(name, sizeof(name) - 1) == 0 ? name : "";
-}
 
 class Execution {
  public:
@@ -194,13 +190,14 @@ void Execution::log() {
   result_.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const char* outcome = result_.stopped ? "stopped" : result_.failures.empty() ? "done" : "failed";
-  dataset_.database->update_build({build_number_, "", "", result_.device, outcome, result_.images,
-                                   result_.built, result_.reused, result_.failed,
+  dataset_.database->update_build({build_number_, "", "", 0, result_.device, outcome,
+                                   result_.images, result_.built, result_.reused, result_.failed,
                                    result_.traced_samples, result_.seconds});
 }
 
 BuildResult Execution::run() {
-  build_number_ = dataset_.database->begin_build(dataset_.row.id, host_name());
+  build_number_ = dataset_.database->begin_build(dataset_.row.id, host_name(), ::getpid());
+  clean_up_killed_builds(dataset_, build_number_);
   result_.images = plan_.images.size();
   make_all(sort_images());
   collect_failures();

@@ -77,6 +77,7 @@ Film ImageMaker::trace_film(Work& work) {
   if (dataset_.recipe.keep_film) {
     Product product = product_of(work.image.keys.render, "film");
     product.rejected_samples = film.rejected_samples;
+    product.relative_error = film.relative_error;
     keep(work, std::move(product), encode_film_exr(film), {watch.seconds(), renderer().device()});
   }
   return film;
@@ -90,6 +91,7 @@ Film ImageMaker::obtain_film(Work& work) {
   if (!bytes) return trace_film(work);
   Film film = decode_film_exr(*bytes, "film of " + work.image.spec.id);
   film.rejected_samples = known->rejected_samples;
+  film.relative_error = known->relative_error;
   return film;
 }
 
@@ -103,6 +105,7 @@ Product ImageMaker::develop_image(Work& work, const OutputFile& output) {
   Product product = product_of(output.key, output.kind);
   product.tone_map_scale = tone_map_scale(film, tone_map);
   product.rejected_samples = film.rejected_samples;
+  product.relative_error = film.relative_error;
   const std::vector<std::byte> bytes = encode_png(picture);
   return keep(work, std::move(product), bytes, {watch.seconds(), ""});
 }

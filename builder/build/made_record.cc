@@ -16,7 +16,8 @@ Hash128 hash_field(const json& object, const char* name) {
   const std::string text = object.at(name).get<std::string>();
   const std::optional<Hash128> hash = Hash128::from_hex(text);
   if (!hash)
-    fail(ErrorKind::io, "a record of the store: {} must be a hash, got \"{}\"", name, text);
+    throw UnreadableRecord(
+        fmt::format("a record of the store: {} must be a hash, got \"{}\"", name, text));
   return *hash;
 }
 
@@ -31,6 +32,8 @@ MadeProduct from_line(const std::string& line) {
   made.product.pixels = hash_field(object, "pixels");
   made.product.tone_map_scale = object.at("tone_map_scale").get<double>();
   made.product.rejected_samples = object.at("rejected_samples").get<std::uint64_t>();
+  if (const json& error = object.at("relative_error"); !error.is_null())
+    made.product.relative_error = error.get<double>();
   made.run.seconds = object.at("seconds").get<double>();
   made.run.device = object.at("device").get<std::string>();
   return made;
@@ -41,16 +44,18 @@ MadeProduct from_line(const std::string& line) {
 std::string to_record(const std::vector<MadeProduct>& made) {
   std::string text;
   for (const auto& [product, run] : made) {
-    const json object{{"key", product.key.hex()},
-                      {"kind", product.kind},
-                      {"object", product.object.hex()},
-                      {"size_bytes", product.size_bytes},
-                      {"sha256", product.sha256},
-                      {"pixels", product.pixels.hex()},
-                      {"tone_map_scale", product.tone_map_scale},
-                      {"rejected_samples", product.rejected_samples},
-                      {"seconds", run.seconds},
-                      {"device", run.device}};
+    const json object{
+        {"key", product.key.hex()},
+        {"kind", product.kind},
+        {"object", product.object.hex()},
+        {"size_bytes", product.size_bytes},
+        {"sha256", product.sha256},
+        {"pixels", product.pixels.hex()},
+        {"tone_map_scale", product.tone_map_scale},
+        {"rejected_samples", product.rejected_samples},
+        {"relative_error", product.relative_error ? json(*product.relative_error) : json()},
+        {"seconds", run.seconds},
+        {"device", run.device}};
     text += object.dump(-1, ' ', false, json::error_handler_t::replace) + '\n';
   }
   return text;
@@ -63,7 +68,7 @@ std::vector<MadeProduct> from_record(const std::string& text) {
     for (std::string line; std::getline(lines, line);)
       made.push_back(from_line(line));
   } catch (const json::exception& error) {
-    fail(ErrorKind::io, "a record of the store cannot be read: {}", error.what());
+    throw UnreadableRecord(fmt::format("a record of the store cannot be read: {}", error.what()));
   }
   return made;
 }

@@ -25,17 +25,17 @@ void set_aside(const fs::path& file) {
     fs::remove(file.string() + side, error);
 }
 
-std::size_t refill(Database& database, Store& store) {
-  std::size_t count = 0;
+void refill(Database& database, Store& store) {
   Transaction transaction(database.connection());
   store.visit_records([&](const std::string& text) {
-    for (const MadeProduct& made : from_record(text)) {
-      database.put_product(made.product, made.run);
-      ++count;
+    try {
+      for (const MadeProduct& made : from_record(text))
+        database.put_product(made.product, made.run);
+    } catch (const UnreadableRecord& error) {
+      warn(error.what());  // of another version: what it tells of is made again
     }
   });
   transaction.commit();
-  return count;
 }
 
 }  // namespace
@@ -43,26 +43,22 @@ std::size_t refill(Database& database, Store& store) {
 std::unique_ptr<Database> open_database(Store& store, Claims& claims) {
   const fs::path file = store.folder() / "dsbuild.sqlite";
   claims.share_database();
-  std::string damage;
+  std::unique_ptr<Database> database;
   try {
-    // A store whose database was removed is refilled too.
-    if (fs::exists(file)) return std::make_unique<Database>(file);
+    database = std::make_unique<Database>(file);
   } catch (const DamagedDatabase& error) {
-    damage = error.what();
+    if (!claims.try_own_database())
+      fail(ErrorKind::io, "{}; it cannot be set aside while another dsbuild has it open",
+           error.what());
+    warn(error.what());
+    set_aside(file);
+    warn(fmt::format("{0}: set aside as {0}.damaged; its results are taken from the store",
+                     file.string()));
+    database = std::make_unique<Database>(file);
+    claims.share_database();
   }
-  if (!claims.try_own_database()) {
-    if (damage.empty()) return std::make_unique<Database>(file);
-    fail(ErrorKind::io, "{}; it cannot be set aside while another dsbuild has it open", damage);
-  }
-  if (!damage.empty()) set_aside(file);
-  auto database = std::make_unique<Database>(file);
-  const std::size_t count = refill(*database, store);
-  if (!damage.empty()) {
-    warn(damage);
-    warn(fmt::format("{}: set aside as {}.damaged, {} results recovered from the store",
-                     file.string(), file.filename().string(), count));
-  }
-  claims.share_database();
+  // New, set aside, removed or emptied by somebody: the records know what the store holds.
+  if (!database->has_products()) refill(*database, store);
   return database;
 }
 

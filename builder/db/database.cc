@@ -83,18 +83,24 @@ void Database::put_geometry(Hash128 content, int reader, Hash128 geometry) {
       .run();
 }
 
+bool Database::has_products() {
+  return connection_.prepare("SELECT 1 FROM product LIMIT 1").step();
+}
+
 std::optional<Product> Database::find_product(Hash128 key) {
   Statement row = connection_.prepare(
-      "SELECT kind, object, size_bytes, sha256, pixels, tone_map_scale, rejected_samples FROM "
-      "product WHERE key = ?1");
+      "SELECT kind, object, size_bytes, sha256, pixels, tone_map_scale, rejected_samples, "
+      "relative_error FROM product WHERE key = ?1");
   if (!row.bind(1, key.hex()).step()) return std::nullopt;
-  return Product{key,         row.text(0),         hash_column(row, 1), row.count(2),
-                 row.text(3), hash_column(row, 4), row.real(5),         row.count(6)};
+  return Product{key,          row.text(0),  hash_column(row, 1),
+                 row.count(2), row.text(3),  hash_column(row, 4),
+                 row.real(5),  row.count(6), row.optional_real(7)};
 }
 
 void Database::put_product(const Product& product, const TraceRun& run) {
   connection_
-      .prepare("INSERT OR REPLACE INTO product VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)")
+      .prepare(
+          "INSERT OR REPLACE INTO product VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)")
       .bind(1, product.key.hex())
       .bind(2, product.kind)
       .bind(3, product.object.hex())
@@ -103,8 +109,9 @@ void Database::put_product(const Product& product, const TraceRun& run) {
       .bind(6, product.pixels.hex())
       .bind(7, product.tone_map_scale)
       .bind_count(8, product.rejected_samples)
-      .bind(9, run.seconds)
-      .bind(10, run.device)
+      .bind_optional(9, product.relative_error)
+      .bind(10, run.seconds)
+      .bind(11, run.device)
       .run();
 }
 
@@ -204,13 +211,15 @@ void Database::remove_placed(const std::string& dataset, const std::string& path
       .run();
 }
 
-std::int64_t Database::begin_build(const std::string& dataset, const std::string& host) {
+std::int64_t Database::begin_build(const std::string& dataset, const std::string& host,
+                                   std::int64_t process) {
   Statement row = connection_.prepare(
-      "INSERT INTO build (dataset, started_at, host, device, outcome, images, built, reused, "
-      "failed, traced_samples, "
-      "seconds) VALUES (?1, datetime('now'), ?2, '', 'running', 0, 0, 0, 0, 0, 0) RETURNING "
-      "number");
-  row.bind(1, dataset).bind(2, host).step();
+      "INSERT INTO build (dataset, started_at, host, process, device, outcome, images, built, "
+      "reused, failed, "
+      "traced_samples, seconds) VALUES (?1, datetime('now'), ?2, ?3, '', 'running', 0, 0, 0, 0, 0, "
+      "0) "
+      "RETURNING number");
+  row.bind(1, dataset).bind(2, host).bind(3, process).step();
   const std::int64_t number = row.integer(0);
   row.step();  // to its end: the row is only written then
   return number;
@@ -237,14 +246,14 @@ void Database::update_build(const BuildRow& row) {
 std::vector<BuildRow> Database::builds(const std::string& dataset) {
   std::vector<BuildRow> builds;
   Statement row = connection_.prepare(
-      "SELECT number, started_at, host, device, outcome, images, built, reused, failed, "
+      "SELECT number, started_at, host, process, device, outcome, images, built, reused, failed, "
       "traced_samples, seconds "
       "FROM build WHERE dataset = ?1 ORDER BY number DESC");
   row.bind(1, dataset);
   while (row.step())
-    builds.push_back({row.integer(0), row.text(1), row.text(2), row.text(3), row.text(4),
-                      row.count(5), row.count(6), row.count(7), row.count(8), row.count(9),
-                      row.real(10)});
+    builds.push_back({row.integer(0), row.text(1), row.text(2), row.integer(3), row.text(4),
+                      row.text(5), row.count(6), row.count(7), row.count(8), row.count(9),
+                      row.count(10), row.real(11)});
   return builds;
 }
 

@@ -27,6 +27,8 @@ struct Product {
   Hash128 pixels;                      ///< of its decoded pixels
   double tone_map_scale = 1;           ///< images: the factor the tone map used
   std::uint64_t rejected_samples = 0;  ///< films and images
+  std::optional<double>
+      relative_error{};  ///< films and images: Film::relative_error, where it is known
 };
 
 /// How and when a film was made. Never in a manifest: another machine has other values.
@@ -63,7 +65,9 @@ struct DatasetRow {
 struct BuildRow {
   std::int64_t number = 0;
   std::string started_at;  ///< UTC, "2024-02-29 12:00:00"
-  std::string host, device;
+  std::string host;
+  std::int64_t process = 0;  ///< number on that host
+  std::string device;
   std::string outcome;  ///< "running" (or killed), "done", "failed", "stopped"
   std::uint64_t images = 0, built = 0, reused = 0, failed = 0, traced_samples = 0;
   double seconds = 0;
@@ -90,6 +94,7 @@ class Database {
   std::optional<Hash128> find_geometry(Hash128 content, int reader);
   void put_geometry(Hash128 content, int reader, Hash128 geometry);
 
+  bool has_products();
   std::optional<Product> find_product(Hash128 key);
   void put_product(const Product& product, const TraceRun& run);
 
@@ -106,7 +111,8 @@ class Database {
   void put_placed(const std::string& dataset, const PlacedFile& file);
   void remove_placed(const std::string& dataset, const std::string& path);
 
-  std::int64_t begin_build(const std::string& dataset, const std::string& host);
+  std::int64_t begin_build(const std::string& dataset, const std::string& host,
+                           std::int64_t process);
   void update_build(const BuildRow& row);
   /// The newest first.
   std::vector<BuildRow> builds(const std::string& dataset);

@@ -29,6 +29,7 @@ CREATE TABLE product (
   pixels TEXT NOT NULL,
   tone_map_scale REAL NOT NULL,
   rejected_samples INTEGER NOT NULL,
+  relative_error REAL,        -- NULL where nothing is known of it
   seconds REAL NOT NULL,
   device TEXT NOT NULL
 ) WITHOUT ROWID;
@@ -57,7 +58,7 @@ CREATE TABLE placed (
 CREATE TABLE build (
   number INTEGER PRIMARY KEY,
   dataset TEXT NOT NULL,
-  started_at TEXT NOT NULL, host TEXT NOT NULL, device TEXT NOT NULL,
+  started_at TEXT NOT NULL, host TEXT NOT NULL, process INTEGER NOT NULL, device TEXT NOT NULL,
   outcome TEXT NOT NULL,
   images INTEGER NOT NULL, built INTEGER NOT NULL, reused INTEGER NOT NULL, failed INTEGER NOT NULL,
   traced_samples INTEGER NOT NULL,

@@ -111,6 +111,13 @@ Statement& Statement::bind_count(int parameter, std::uint64_t value) {
   return bind(parameter, static_cast<std::int64_t>(value));
 }
 
+Statement& Statement::bind_optional(int parameter, std::optional<double> value) {
+  if (value) return bind(parameter, *value);
+  const int code = sqlite3_bind_null(handle_, parameter);
+  if (code != SQLITE_OK) connection_.fail_sqlite(code);
+  return *this;
+}
+
 bool Statement::step() {
   const int code = sqlite3_step(handle_);
   if (code == SQLITE_ROW) return true;
@@ -138,6 +145,11 @@ std::uint64_t Statement::count(int column) const {
 
 double Statement::real(int column) const {
   return sqlite3_column_double(handle_, column);
+}
+
+std::optional<double> Statement::optional_real(int column) const {
+  if (sqlite3_column_type(handle_, column) == SQLITE_NULL) return std::nullopt;
+  return real(column);
 }
 
 std::string Statement::text(int column) const {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -43,6 +44,8 @@ class Statement {
   }
   /// Counts and sizes; a value of 2^63 or more is a bug.
   Statement& bind_count(int parameter, std::uint64_t value);
+  /// NULL where there is no value.
+  Statement& bind_optional(int parameter, std::optional<double> value);
 
   /// True where there is a row to read.
   bool step();
@@ -52,6 +55,7 @@ class Statement {
   std::int64_t integer(int column) const;
   std::uint64_t count(int column) const;
   double real(int column) const;
+  std::optional<double> optional_real(int column) const;
   std::string text(int column) const;
 
  private:

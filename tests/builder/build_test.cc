@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "builder/build/host.h"
 #include "manifests/manifest.h"
 #include "tests/builder/tiny_dataset.h"
 
@@ -83,7 +84,8 @@ TEST_F(BuildTest, WithoutKeptFilmsAToneMapTracesAgain) {
   request.overrides = {"outputs.keep_film=false"};
   build();
   EXPECT_EQ(build().reused, k_images);
-  request.overrides.emplace_back("outputs.tone_map=linear");
+  request.overrides.insert(request.overrides.end(),
+                           {"outputs.tone_map=linear", "outputs.tone_map_scale=0.5"});
   EXPECT_EQ(build().traced, k_images);
 }
 
@@ -255,6 +257,28 @@ TEST_F(BuildTest, AMovedDatasetTakesItsStoreAlong) {
   request.target = scratch() / "moved";
   const BuildResult result = build();
   EXPECT_EQ(result.reused, k_images);
+}
+
+TEST_F(BuildTest, CleansUpAfterAKilledBuildAndNotAfterARunningOne) {
+  build();
+  const auto files = contents();
+  const fs::path killed = output() / "images/box.off/.0.png.999999999.0.tmp";
+  const fs::path running = output() / "images/box.off/.1.png.1.0.tmp";  // of process 1
+  write_file_atomic(killed, std::string_view("half"));
+  write_file_atomic(running, std::string_view("half"));
+  {
+    const Dataset dataset = open_dataset(request, Access::build, real_disk);
+    dataset.database->begin_build(dataset.row.id, host_name(), 999999999);
+  }
+  build();
+  EXPECT_FALSE(fs::exists(killed));
+  EXPECT_TRUE(fs::exists(running));
+  fs::remove(running);
+  EXPECT_EQ(contents(), files);
+  const Dataset dataset = open_dataset(request, Access::look, real_disk);
+  const auto builds = dataset.database->builds(dataset.row.id);
+  ASSERT_THAT(builds, SizeIs(3));
+  EXPECT_EQ(builds[1].outcome, "killed");
 }
 
 TEST_F(BuildTest, RecordsWhenAndWhereItWasBuilt) {

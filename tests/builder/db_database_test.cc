@@ -88,10 +88,10 @@ TEST(Database, KeepsADatasetAndItsOverrides) {
 
 TEST(Database, LogsBuildsNewestFirst) {
   Database database({});
-  database.begin_build("d", "host");
-  const std::int64_t second = database.begin_build("d", "host");
-  database.begin_build("other", "host");
-  database.update_build({second, "", "", "a device", "done", 5, 3, 1, 1, 4096, 2.5});
+  database.begin_build("d", "host", 17);
+  const std::int64_t second = database.begin_build("d", "host", 17);
+  database.begin_build("other", "host", 17);
+  database.update_build({second, "", "", 0, "a device", "done", 5, 3, 1, 1, 4096, 2.5});
   const auto builds = database.builds("d");
   ASSERT_EQ(builds.size(), 2U);
   EXPECT_EQ(builds[0].number, second);
@@ -100,6 +100,7 @@ TEST(Database, LogsBuildsNewestFirst) {
   EXPECT_EQ(builds[0].traced_samples, 4096U);
   EXPECT_EQ(builds[0].seconds, 2.5);
   EXPECT_EQ(builds[0].host, "host");
+  EXPECT_EQ(builds[0].process, 17);
   EXPECT_EQ(builds[1].outcome, "running");
 }
 

@@ -31,9 +31,9 @@ TEST(MadeRecord, ReadsWhatItWrites) {
 }
 
 TEST(MadeRecord, RefusesOtherTexts) {
-  EXPECT_THROW(from_record("{\"key\":1}\n"), Error);
-  EXPECT_THROW(from_record("{\"key\":\"zz\"}\n"), Error);
-  EXPECT_THROW(from_record("no json\n"), Error);
+  EXPECT_THROW(from_record("{\"key\":1}\n"), UnreadableRecord);
+  EXPECT_THROW(from_record("{\"key\":\"zz\"}\n"), UnreadableRecord);
+  EXPECT_THROW(from_record("no json\n"), UnreadableRecord);
 }
 
 class StoreDatabaseTest : public testing::Test {
@@ -60,7 +60,8 @@ TEST_F(StoreDatabaseTest, RefillsADamagedDatabaseFromTheRecords) {
   EXPECT_TRUE(fs::exists(file_.string() + ".damaged"));
 }
 
-TEST_F(StoreDatabaseTest, RefillsALostDatabaseFromTheRecords) {
+TEST_F(StoreDatabaseTest, RefillsALostDatabaseFromTheRecordsItCanRead) {
+  store_.put_record("of another version\n");
   store_.put_record(to_record({some_product(1)}));
   EXPECT_TRUE(open()->find_product({1, 1}));
 }

@@ -51,6 +51,7 @@ class ManifestTest : public testing::Test {
       image.lens_radius_m = 0.002;
       image.focus_distance_m = 0.1 + 0.2;
       image.tone_map_scale = 1.0 / 3;
+      image.relative_error = 0.0625;
       image.rejected_samples = 3;
       image.render_key = hash_text("key");
       image.files_key = hash_text("files");
@@ -92,6 +93,7 @@ TEST_F(ManifestTest, ReadsBackWhatWasWritten) {
     EXPECT_EQ(images[i].seed, images_[i].seed);
     EXPECT_EQ(images[i].focus_distance_m, 0.1 + 0.2);
     EXPECT_EQ(images[i].tone_map_scale, 1.0 / 3);
+    EXPECT_EQ(images[i].relative_error, 0.0625);
     EXPECT_EQ(images[i].intrinsics, images_[i].intrinsics);
     EXPECT_EQ(images[i].camera_to_world, images_[i].camera_to_world);
     EXPECT_EQ(images[i].parts, images_[i].parts);

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/build/dataset.h"
+
+#include <cstdint>
+
+namespace ds {
+
+/// Enters builds of the dataset whose process ended without saying so (kill -9, power cut) as
+/// "killed" in the log, and removes the half-written temporaries they left in the dataset's folder
+/// and the store. `current` is the number of the build that asks. Costs nothing where none was
+/// killed.
+void clean_up_killed_builds(Dataset& dataset, std::int64_t current);
+
+}  // namespace ds

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What `dsbuild build` makes and what it leaves alone."""
+import json
+import os
+import pty
+import re
+import shutil
+import signal
+import subprocess
+import time
+
+from harness import IMAGES, SAMPLES, TinyCase, main
+
+
+class BuildTest(TinyCase):
+    def test_second_build_makes_nothing(self):
+        first = self.build()
+        self.assert_counts(first, images=IMAGES, built=IMAGES, reused=0, failed=0, traced_samples=IMAGES * SAMPLES)
+        self.assertGreater(first["seconds"], 0)
+        files = self.contents()
+        self.assertEqual(len(files), 2 * IMAGES + 3)
+        self.assert_counts(self.build(), images=IMAGES, built=0, reused=IMAGES, failed=0, traced_samples=0)
+        self.assertEqual(self.contents(), files)
+
+    def test_what_changes_no_pixel_makes_nothing_stale(self):
+        self.build()
+        for path in self.tiny.rglob("*"):
+            os.utime(path)
+        self.edit("materials/red.mat", "# A matte red.", "# Another comment.\n\n")
+        self.edit("materials/green.mat", "kd = 0.1 0.6 0.1", "kd =  0.10 0.60  0.1")
+        self.edit("environments/plain/environment.scn", "# Light", "# A light")
+        self.edit("models/box.off", "# a box, longer than wide\n", "")
+        self.edit("models/tetra.ply", "comment a tetrahedron", "comment saved anew")
+        self.edit("recipe.toml", "# The smallest", "# Still the smallest")
+        self.assert_counts(self.build(), built=0, reused=IMAGES, traced_samples=0)
+
+    def test_a_model_in_another_format_is_the_same_model(self):
+        self.build()
+        (self.tiny / "models/box.off").write_text(
+            "OFF 8 6 0\n" + "-1 -1 -2\n1.0 -1 -2\n1 1 -2\n-1 1 -2\n-1 -1 2\n1 -1 2\n1 1 2e0\n-1 1 2\n"
+            "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n")
+        self.assert_counts(self.build(), built=0, reused=IMAGES)
+
+    def test_an_edited_material_makes_its_images_only(self):
+        self.build()
+        records = [json.loads(line) for line in (self.out / "manifest/images.jsonl").read_text().splitlines()]
+        red = {record["id"] for record in records if record["material"] == "red"}
+        self.assertTrue(0 < len(red) < IMAGES)
+        self.edit("materials/red.mat", "kd = 0.7 0.1 0.1", "kd = 0.6 0.1 0.1")
+        plan = self.run_it("plan", self.recipe, "-o", self.out, "--json").json
+        self.assertEqual({image["id"] for image in plan["stale_images"]}, red)
+        for image in plan["stale_images"]:
+            self.assertRegex(image["reasons"][0], r"material changed: .*kd.*: 0\.7 0\.1 0\.1 -> 0\.6 0\.1 0\.1")
+        self.assert_counts(self.build(), built=len(red), reused=IMAGES - len(red), traced_samples=len(red) * SAMPLES)
+
+    def test_a_tone_map_traces_nothing(self):
+        self.build()
+        counts = self.build("--set", "outputs.tone_map=linear", "--set", "outputs.tone_map_scale=0.25")
+        self.assert_counts(counts, built=IMAGES, developed=IMAGES, traced=0, traced_samples=0)
+
+    def test_a_removed_file_comes_from_the_store(self):
+        self.build()
+        files = self.contents()
+        (self.out / "images/box.off/2.png").unlink()
+        self.assert_counts(self.build(), built=1, reused=IMAGES - 1, developed=0, traced_samples=0)
+        self.assertEqual(self.contents(), files)
+
+    def test_depth_on_request_traces_no_sample(self):
+        self.build()
+        self.assert_counts(self.build("--set", "outputs.depth=exr"), built=IMAGES, traced_samples=0)
+        self.assertTrue((self.out / "images/tetra.ply/0.depth.exr").exists())
+
+    def test_dry_run_makes_nothing(self):
+        counts = self.build("-n")
+        self.assert_counts(counts, images=IMAGES, built=0, stale=IMAGES)
+        self.assertFalse(self.out.exists())
+
+    def test_force_gives_the_same_bytes(self):
+        self.build()
+        files = self.contents()
+        self.assert_counts(self.build("--force"), built=IMAGES, traced_samples=IMAGES * SAMPLES)
+        self.assertEqual(self.contents(), files)
+
+    def test_default_folder_and_change_of_folder(self):
+        run = self.run_it("-C", self.tiny, "build", "recipe.toml")
+        self.assertEqual(run.code, 0, run)
+        self.assertTrue((self.tiny / "out/tiny/images/box.off/0.png").exists())
+        again = self.run_it("build", "-C", self.tiny, "out/tiny", "--json")
+        self.assert_counts(again.json, built=0, reused=IMAGES)
+
+    def test_keep_going_makes_the_rest(self):
+        (self.tiny / "models/bad.ply").write_text("ply\nformat ascii 1.0\nelement vertex 3\n")
+        run = self.run_it("build", self.recipe, "-o", self.out, "--json")
+        self.assertEqual(run.code, 1, run)
+        self.assert_counts(run.json, built=0, failed=4)
+        self.assertEqual(run.err.count("bad.ply:"), 1, "one clear error")
+        self.assert_counts(self.build("-k", code=1), built=IMAGES, failed=4)
+        self.assert_counts(self.build("-k", code=1), built=0, reused=IMAGES, failed=4)
+
+    def test_explain_says_why(self):
+        run = self.run_it("build", self.recipe, "-o", self.out, "--explain")
+        self.assertIn("box.off/0: trace: new", run.out)
+        image = self.out / "images/box.off/0.png"
+        self.assertIn("box.off/0: up to date", self.run_it("explain", image).out)
+        self.edit("recipe.toml", "fov_deg = 49", "fov_deg = 50")
+        for arguments in ([image], [self.out, "box.off/0"], [self.recipe, "-o", self.out, "box.off/0"]):
+            run = self.run_it("explain", *arguments)
+            self.assertEqual(run.code, 0, run)
+            self.assertIn("camera: fov_deg: 49 -> 50", run.out)
+        changes = self.run_it("explain", image, "--json").json["changes"]
+        self.assertEqual([(c["part"], c["name"]) for c in changes], [("camera", "fov_deg")])
+
+    def test_status_and_log(self):
+        self.build()
+        status = self.run_it("status", self.out, "--json").json
+        self.assertEqual((status["up_to_date"], status["stale"], status["builds"]), (IMAGES, 0, 1))
+        builds = self.run_it("log", self.out, "--json").json["builds"]
+        self.assertEqual((builds[0]["outcome"], builds[0]["built"]), ("done", IMAGES))
+        self.assertRegex(builds[0]["started_at"], r"^\d{4}-\d\d-\d\d \d\d:\d\d:\d\d$")
+
+    def test_manifest_names_no_time_no_device_and_no_path(self):
+        self.build()
+        text = "".join(path.read_text() for path in (self.out / "manifest").iterdir())
+        device = self.run_it("log", self.out, "--json").json["builds"][0]["device"]
+        self.assertNotIn(device, text)
+        self.assertNotIn(str(self.folder), text)
+        self.assertNotIn(str(time.gmtime().tm_year) + "-", text)
+
+    def test_checksums_are_what_xxhsum_reads(self):
+        if not shutil.which("xxhsum"):
+            self.skipTest("xxhsum is not installed")
+        self.build()
+        run = subprocess.run(["xxhsum", "-c", "manifest/checksums.xxh128"], cwd=self.out, capture_output=True,
+                             text=True, check=False)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        self.assertEqual(run.stdout.count(": OK"), 2 * IMAGES + 2)
+
+    def test_interrupt_ends_cleanly(self):
+        # Large enough that the signal finds the first image under way.
+        slow = ["--set", "engine.spp=4000", "--set", "engine.width=128", "--set", "engine.height=128"]
+        for number in (signal.SIGINT, signal.SIGTERM):
+            process = self.start("build", self.recipe, "-o", self.out, "--json", *slow)
+            while not (self.out / ".dsbuild/dsbuild.sqlite").exists():
+                time.sleep(0.01)
+            time.sleep(1.0)
+            process.send_signal(number)
+            out, err = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 1, err)
+            self.assertIn("stopped", err)
+            counts = json.loads(out.splitlines()[-1])
+            self.assertTrue(counts["stopped"])
+            self.assertEqual(counts["built"] + counts["reused"] + counts["not_reached"], IMAGES)
+        self.assertEqual(self.run_it("log", self.out, "--json").json["builds"][0]["outcome"], "stopped")
+
+    def test_progress_moves_on_a_terminal_and_is_plain_elsewhere(self):
+        plain = self.run_it("build", self.recipe, "-o", self.out)
+        self.assertNotIn("\r", plain.err)
+        self.assertRegex(plain.err, rf"\[{IMAGES}/{IMAGES}\] 100% \S+")
+        master, slave = pty.openpty()
+        process = subprocess.Popen(self.command("build", self.recipe, "-o", self.out, "--force"), stderr=slave,
+                                   stdout=subprocess.DEVNULL, cwd=self.folder)
+        os.close(slave)
+        shown = b""
+        while True:
+            try:
+                block = os.read(master, 4096)
+            except OSError:  # the other side closed
+                break
+            if not block:
+                break
+            shown += block
+        os.close(master)
+        self.assertEqual(process.wait(), 0)
+        self.assertRegex(shown.decode(), r"\r\x1b\[K\[\d/8\] .*Msamples/s  ETA \d+:\d\d")
+        self.assertFalse(re.search(r"[^\r]\n", shown.decode()), "one line only")
+
+    def test_models_are_reported(self):
+        run = self.run_it("models", self.recipe, "--json")
+        self.assertEqual(run.code, 0, run)
+        models = {model["model"]: model for model in run.json["models"]}
+        self.assertEqual((models["box.off"]["faces"], models["box.off"]["n_gons"]), (6, 6))
+        self.assertEqual(models["box.off"]["triangles"], 12)
+        self.assertIn("tetra.ply", self.run_it("models", self.recipe).out)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""kill -9 at random moments, and builds beside each other: the bytes are always those of an undisturbed build."""
+import json
+import random
+import shutil
+import time
+
+from harness import IMAGES, TinyCase, main
+
+KILLS = 60
+
+
+class CrashTest(TinyCase):
+    def setUp(self):
+        super().setUp()
+        started = time.monotonic()
+        self.build()
+        self.seconds = time.monotonic() - started
+        self.wanted = self.contents()
+        shutil.rmtree(self.out)
+
+    def check(self):
+        counts = self.build()
+        self.assertEqual(counts["built"] + counts["reused"], IMAGES)
+        self.assertEqual(self.contents(), self.wanted)
+        self.assertEqual(self.run_it("verify", self.out).code, 0)
+
+    def test_kill_at_random_moments(self):
+        chance = random.Random(3)
+        kills = 0
+        while kills < KILLS:
+            process = self.start("build", self.recipe, "-o", self.out)
+            time.sleep(chance.uniform(0, 1.2 * self.seconds))
+            process.kill()
+            process.communicate()
+            if process.returncode != -9:  # it was through before
+                shutil.rmtree(self.out, ignore_errors=True)
+                continue
+            kills += 1
+            # Every third time build to the end and compare; else go on from the wreck.
+            if kills % 3 == 0:
+                self.check()
+                shutil.rmtree(self.out)
+        self.check()
+
+    def test_two_processes_build_one_dataset(self):
+        for _ in range(5):
+            both = [self.start("build", self.recipe, "-o", self.out, "--json") for _ in range(2)]
+            for process in both:
+                _, err = process.communicate(timeout=300)
+                self.assertEqual(process.returncode, 0, err)
+            self.check()
+            shutil.rmtree(self.out)
+
+    def test_two_processes_share_the_work_of_one_store(self):
+        store, other = self.folder / "store", self.folder / "other"
+        work = ["--set", "engine.spp=64", "--set", "camera.count=12", "--store", store, "--json"]
+        both = [self.start("build", self.recipe, "-o", out, *work) for out in (self.out, other)]
+        traced = 0
+        for process in both:
+            out, err = process.communicate(timeout=300)
+            self.assertEqual(process.returncode, 0, err)
+            traced += json.loads(out.splitlines()[-1])["traced"]
+        self.assertEqual(traced, 24, "each image is traced once, by one of the two")
+        self.assertEqual(self.contents(), self.contents(other))
+
+
+if __name__ == "__main__":
+    main()
