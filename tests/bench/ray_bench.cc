@@ -97,8 +97,7 @@ class EmbreeTracer {
   /// As Embree's manual asks for its full speed.
   static void flush_denormals() {
 #if defined(__SSE__)
-    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+    _mm_setcsr(_mm_getcsr() | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON);
 #endif
   }
 
@@ -127,7 +126,6 @@ class KernelTracer {
     const Bvh bvh = build_bvh(triangles);
     nodes_ = device_.upload(bvh.nodes);
     leaves_ = device_.upload(bvh.leaves);
-    reach_ = bvh.reach;
     kernel_ =
         device_.kernel(device_.build(rays_program_text(), k_strict_options, {}), "trace_nearest");
   }
@@ -139,9 +137,8 @@ class KernelTracer {
     hits_ = device_.make_buffer(count_ * 4 * sizeof(float));
     kernel_.set(0, nodes_);
     kernel_.set(1, leaves_);
-    kernel_.set(2, reach_);
-    kernel_.set(3, device_.upload(rays));
-    kernel_.set(4, hits_);
+    kernel_.set(2, device_.upload(rays));
+    kernel_.set(3, hits_);
   }
   void trace() const { device_.run(kernel_, 0, count_, k_local_size); }
 
@@ -157,7 +154,6 @@ class KernelTracer {
  private:
   Device device_;
   Buffer nodes_, leaves_, hits_;
-  float reach_ = 0;
   Kernel kernel_;
   std::size_t count_ = 0;
 };

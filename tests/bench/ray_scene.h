@@ -4,6 +4,7 @@
 #include "tracer/base/vec.h"
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 namespace ds {
