@@ -14,6 +14,17 @@ namespace {
 /// milliseconds, but a disk under load can hold one up for many seconds.
 constexpr int k_busy_timeout_ms = 120'000;
 
+/// Changing a new file to WAL takes an exclusive lock for which SQLite does not call the busy
+/// handler: where two processes open the file at once, the second is told "locked" without a wait.
+int enter_wal_mode(sqlite3* handle) {
+  constexpr int step_ms = 10;
+  for (int waited_ms = 0;; waited_ms += step_ms) {
+    const int code = sqlite3_exec(handle, "PRAGMA journal_mode = WAL", nullptr, nullptr, nullptr);
+    if ((code & 0xff) != SQLITE_BUSY || waited_ms >= k_busy_timeout_ms) return code;
+    sqlite3_sleep(step_ms);
+  }
+}
+
 }  // namespace
 
 Connection::Connection(const std::filesystem::path& file)
@@ -28,7 +39,10 @@ Connection::Connection(const std::filesystem::path& file)
     sqlite3_busy_timeout(handle_, k_busy_timeout_ms);
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the only form of this call
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
-    if (!file.empty()) execute("PRAGMA journal_mode = WAL");
+    if (!file.empty()) {
+      const int wal = enter_wal_mode(handle_);
+      if (wal != SQLITE_OK) fail_sqlite(wal);
+    }
     execute("PRAGMA synchronous = FULL");
     execute("PRAGMA foreign_keys = ON");
   } catch (...) {

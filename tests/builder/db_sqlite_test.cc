@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <thread>
+#include <vector>
 
 namespace ds {
 namespace {
@@ -77,6 +79,27 @@ TEST(Sqlite, TellsADamagedFileFromOtherTrouble) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::io);
+  }
+}
+
+/// A new file changes its journal mode under a lock that SQLite does not wait for by itself.
+TEST(ConnectionTest, ManyOpenANewFileAtOnce) {
+  for (int round = 0; round < 30; ++round) {
+    const TemporaryFolder folder;
+    std::atomic<int> failures{0};
+    std::vector<std::thread> threads;
+    for (int i = 0; i < 8; ++i)
+      threads.emplace_back([&] {
+        try {
+          Connection connection(folder.path() / "new.sqlite");
+          connection.execute("CREATE TABLE IF NOT EXISTS t (x INTEGER)");
+        } catch (const Error&) {
+          ++failures;
+        }
+      });
+    for (std::thread& thread : threads)
+      thread.join();
+    ASSERT_EQ(failures, 0) << "in round " << round;
   }
 }
 

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// The text of specialised programs: it holds what a scene calls for and nothing else, since the
+// render key takes it.
+#include "tracer/device/program_text.h"
+
+#include "tests/render/pictures.h"
+#include "tracer/base/error.h"
+#include "tracer/kernels/embedded.h"
+#include "tracer/scene/type_tables.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <regex>
+#include <set>
+#include <span>
+
+namespace ds {
+namespace {
+
+Scene scene_of(const std::vector<std::string_view>& materials) {
+  Scene scene;
+  for (const std::string_view type : materials)
+    pictures::add_object(scene, pictures::quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}),
+                         pictures::add_material(scene, type));
+  scene.lights.push_back(pictures::point_light({0, 0, 1}, {1, 1, 1}));
+  return scene;
+}
+
+std::string text_of(const Scene& scene, const Camera& camera = {}) {
+  return strip_comments(path_program_text(features_of(scene, camera)));
+}
+
+TEST(StripComments, KeepsCodeOnly) {
+  EXPECT_EQ(strip_comments("a  // one\n\n/* two\n three */ b\nc /* d */ e  \n// f"),
+            "a\n  b\nc   e\n");
+  EXPECT_EQ(strip_comments(""), "");
+  EXPECT_EQ(strip_comments("/* not closed"), "");
+  EXPECT_EQ(strip_comments("a / b * c\r\n"), "a / b * c\n");
+}
+
+TEST(StripComments, ACommentMoreOrLessChangesNothing) {
+  for (const EmbeddedFile& file : std::span(k_embedded_files, k_embedded_file_count)) {
+    const std::string text(file.text);
+    std::string commented = "// a remark at the start\n";
+    for (const char c : text)
+      commented += c == '\n' ? std::string("  // a remark /* at an end\n\n") : std::string(1, c);
+    // A line that goes on by a backslash cannot end in a comment.
+    if (text.find("\\\n") != text.npos) continue;
+    EXPECT_EQ(strip_comments(commented), strip_comments(text)) << file.path;
+  }
+}
+
+TEST(ProgramText, HoldsNoMaterialThatTheSceneDoesNotShow) {
+  for (const NodeType& shown : material_types()) {
+    if (shown.name == "mix") continue;
+    const std::string text = text_of(scene_of({shown.name}));
+    for (const NodeType& other : material_types())
+      EXPECT_EQ(text.find(std::string(other.kernel_prefix) + "_sample") != text.npos,
+                other.name == shown.name)
+          << shown.name << " and " << other.name;
+  }
+  // An edit of glass's file therefore changes no key of a scene without glass.
+  EXPECT_EQ(text_of(scene_of({"matte"})).find("glass"), std::string::npos);
+}
+
+TEST(ProgramText, MaterialsThatNothingShowsAreLeftOut) {
+  Scene scene = scene_of({"matte"});
+  pictures::add_material(scene, "glass");
+  EXPECT_EQ(text_of(scene), text_of(scene_of({"matte"})));
+  // A mix shows its parts.
+  pictures::add_object(scene, pictures::quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}),
+                       pictures::add_material(scene, "mix"));
+  EXPECT_NE(text_of(scene).find("glass_sample"), std::string::npos);
+}
+
+TEST(ProgramText, LightsTexturesAndLensAreThereWhereCalledFor) {
+  Scene scene = scene_of({"matte"});
+  const std::string plain = text_of(scene);
+  for (const char* word : {"sun_", "spot_", "infinite_", "mesh_sample", "checkerboard",
+                           "DS_TEXTURES(X)", "#define DS_LENS"})
+    EXPECT_EQ(plain.find(std::string("\n") + word), std::string::npos) << word;
+  EXPECT_EQ(plain.find("infinite_escape"), std::string::npos);
+  Camera lens;
+  lens.lens_radius_m = 0.01;
+  EXPECT_NE(text_of(scene, lens), plain);
+  Scene sunny = scene;
+  sunny.lights.push_back(pictures::sun_light({0, 0, 1}, 1, {1, 1, 1}));
+  EXPECT_NE(text_of(sunny).find("sun_escape"), std::string::npos);
+  Scene textured = scene;
+  textured.materials[0].inputs[0] = {{}, pictures::add_texture(textured, "marble", {})};
+  EXPECT_NE(text_of(textured).find("marble_evaluate"), std::string::npos);
+  EXPECT_EQ(text_of(textured).find("checkerboard3d_evaluate"), std::string::npos);
+}
+
+TEST(ProgramText, EqualFeaturesMakeEqualTexts) {
+  // Whatever the order, the numbers and the geometry.
+  const std::string text = text_of(scene_of({"matte", "glossy2", "glass"}));
+  EXPECT_EQ(text_of(scene_of({"glass", "matte", "glossy2", "glass"})), text);
+  Scene moved = scene_of({"glossy2", "glass", "matte"});
+  pictures::set_input(moved, 0, "kd", {0.1f, 0.2f, 0.3f});
+  moved.objects[0].mesh = pictures::sphere({3, 2, 1}, 2, 9, true);
+  moved.lights.push_back(pictures::point_light({5, 5, 5}, {9, 9, 9}));
+  EXPECT_EQ(text_of(moved), text);
+}
+
+TEST(ProgramText, EveryFileStandsInItOnce) {
+  const std::string text = path_program_text(all_features());
+  for (const EmbeddedFile& file : std::span(k_embedded_files, k_embedded_file_count)) {
+    // The first line of code of each file that is part of the whole program.
+    if (std::string_view(file.path).ends_with("geometry.cl") ||
+        std::string_view(file.path).ends_with("rays.cl"))
+      continue;
+    std::string_view body = file.text;
+    const std::size_t enumeration = body.find("DS_FN ");
+    if (enumeration == body.npos) continue;
+    const std::string_view declaration =
+        body.substr(enumeration, body.find(')', enumeration) - enumeration);
+    std::size_t count = 0;
+    for (std::size_t at = text.find(declaration); at != text.npos;
+         at = text.find(declaration, at + 1))
+      ++count;
+    EXPECT_EQ(count, 1u) << file.path << ": " << declaration;
+  }
+  EXPECT_EQ(text.find("#include"), std::string::npos);
+  EXPECT_EQ(text.find("#pragma once"), std::string::npos);
+}
+
+TEST(ProgramText, NoBuiltInTranscendentalIsCalled) {
+  // They give other bits on other devices.
+  const std::string text = strip_comments(path_program_text(all_features()) +
+                                          geometry_program_text() + rays_program_text());
+  const std::regex builtin(
+      R"(\b(native_|half_)?(sin|cos|tan|exp2?|exp10|log2?|log10|powr?|pown|asin|acos|atan2?|rsqrt|cbrt|hypot|normalize|fast_\w+|mad)\s*\()");
+  std::smatch match;
+  EXPECT_FALSE(std::regex_search(text, match, builtin)) << match.str();
+}
+
+TEST(ProgramText, StrictProgramsSwitchContractionOff) {
+  for (const std::string& text :
+       {path_program_text(all_features()), geometry_program_text(), rays_program_text()})
+    EXPECT_NE(text.find("#pragma OPENCL FP_CONTRACT OFF"), std::string::npos);
+}
+
+TEST(Assemble, AMissingFileIsNamed) {
+  try {
+    assemble("", "tracer/kernels/none.cl");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("tracer/kernels/none.cl"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace ds

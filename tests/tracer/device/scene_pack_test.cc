@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene in the kernels' tables.
+#include "tracer/device/scene_pack.h"
+
+#include "tests/render/pictures.h"
+#include "tracer/base/error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace ds {
+namespace {
+
+PackedScene pack(const Scene& scene) {
+  return pack_scene(scene, features_of(scene, Camera{}), 2.0f, BvhQuality::medium);
+}
+
+float number(const Words& words, std::size_t i) {
+  return std::bit_cast<float>(words.words().at(i));
+}
+
+Scene lit(const std::vector<Light>& lights) {
+  Scene scene;
+  pictures::add_object(scene, pictures::quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}),
+                       pictures::add_matte(scene, {1, 1, 1}));
+  scene.lights = lights;
+  return scene;
+}
+
+TEST(PackScene, ASceneWithoutTrianglesIsAnError) {
+  EXPECT_THROW(pack(Scene{}), Error);
+}
+
+TEST(PackScene, TrianglesStandInTheObjectsOrder) {
+  Scene scene = lit({});
+  pictures::add_object(scene, pictures::box({0, 0, 1}, {1, 1, 1}), 0, 77);
+  const PackedScene packed = pack(scene);
+  ASSERT_EQ(packed.triangles.words().size(), 14u * kernels::k_triangle_words);
+  EXPECT_EQ(first_triangles(scene), (std::vector<std::uint32_t>{0, 2}));
+  EXPECT_EQ(packed.triangles.words()[2 * kernels::k_triangle_words + kernels::k_triangle_object],
+            77u);
+  EXPECT_EQ(packed.triangles.words()[kernels::k_triangle_light], k_none);
+  // A mesh without normals is flat: the quad's own is +z.
+  EXPECT_EQ(number(packed.triangles, kernels::k_triangle_normals + 2), 1);
+}
+
+TEST(PackScene, AMeshLightsTrianglesKnowTheirLight) {
+  Scene scene = lit({pictures::point_light({0, 0, 1}, {1, 1, 1})});
+  const int lamp = pictures::add_matte(scene, {0, 0, 0});
+  scene.materials.back().emits = true;
+  scene.materials.back().emission.constant = {1, 1, 1};
+  pictures::add_object(scene, pictures::quad({0, 0, 2}, {1, 0, 0}, {0, 1, 0}), lamp);
+  const PackedScene packed = pack(scene);
+  const std::uint32_t light =
+      packed.triangles.words()[3 * kernels::k_triangle_words + kernels::k_triangle_light];
+  ASSERT_LT(light, packed.data.light_count);
+  // Its area is among its parameters.
+  EXPECT_EQ(number(packed.lights, light * kernels::k_light_words + kernels::k_light_parameters + 3),
+            4);
+}
+
+TEST(PackLights, SelectionProbabilitiesSumToOneAndNoLightIsStarved) {
+  const std::vector<Light> lights = {pictures::point_light({0, 0, 1}, {1, 1, 1}),
+                                     pictures::point_light({0, 0, 2}, {1e6f, 1e6f, 1e6f}),
+                                     pictures::spot_light({0, 0, 3}, {0, 0, -1}, 30, 10, {2, 2, 2}),
+                                     pictures::constant_light({1, 1, 1}),
+                                     pictures::sun_light({0, 0, 1}, 1, {100, 100, 100})};
+  const PackedScene packed = pack(lit(lights));
+  ASSERT_EQ(packed.data.light_count, 5u);
+  double sum = 0;
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    const float share =
+        number(packed.lights, i * kernels::k_light_words + kernels::k_light_probability);
+    const float high = number(packed.tables, packed.data.light_table + i);
+    sum += double{share};
+    EXPECT_NEAR(double{high}, sum, 1e-6);
+    if (share > 0) EXPECT_GT(share, 0.1f);
+  }
+  EXPECT_NEAR(sum, 1, 1e-6);
+  EXPECT_EQ(number(packed.tables, packed.data.light_table + 4), 1);
+  // The constant light is met, never sampled; those met stand behind those sampled only.
+  EXPECT_EQ(packed.data.first_escape_light, 3u);
+}
+
+TEST(PackLights, BlackLightsGetNoShare) {
+  const PackedScene packed = pack(lit(
+      {pictures::point_light({0, 0, 1}, {0, 0, 0}), pictures::point_light({0, 0, 2}, {1, 1, 1})}));
+  EXPECT_EQ(number(packed.lights, kernels::k_light_probability), 0);
+  EXPECT_EQ(number(packed.lights, kernels::k_light_words + kernels::k_light_probability), 1);
+}
+
+/// The filter's table: inverse cumulative, offsets in pixels.
+std::vector<float> filter(float width) {
+  Words tables;
+  EXPECT_EQ(pack_filter(width, tables), 0u);
+  std::vector<float> values;
+  for (std::size_t i = 0; i < tables.words().size(); ++i)
+    values.push_back(number(tables, i));
+  return values;
+}
+
+TEST(PackFilter, BoxIsOnePixelWide) {
+  const std::vector<float> box = filter(0);
+  ASSERT_EQ(box.size(), kernels::k_filter_size + 1u);
+  for (std::size_t i = 0; i < box.size(); ++i)
+    EXPECT_NEAR(double{box[i]}, static_cast<double>(i) / kernels::k_filter_size - 0.5, 1e-6);
+}
+
+TEST(PackFilter, BlackmanHarrisIsSymmetricAndAsWideAsSaid) {
+  for (const float width : {1.5f, 3.0f, 4.0f}) {
+    const std::vector<float> table = filter(width);
+    EXPECT_NEAR(table.front(), -width / 2, 0.08f * width);
+    EXPECT_TRUE(std::is_sorted(table.begin(), table.end()));
+    double variance = 0;
+    for (std::size_t i = 0; i + 1 < table.size(); ++i) {
+      EXPECT_NEAR(table[i], -table[table.size() - 1 - i], 2e-3f * width);
+      const double middle = 0.5 * (double{table[i]} + double{table[i + 1]});
+      variance += middle * middle / kernels::k_filter_size;
+    }
+    // The window's variance by a fine sum in double.
+    double expected = 0, weights = 0;
+    for (int i = 0; i < 20000; ++i) {
+      const double x = (i + 0.5) / 20000;
+      const auto c = [&](int k) { return std::cos(2 * 3.14159265358979 * k * x); };
+      const double w = 0.35875 - 0.48829 * c(1) + 0.14128 * c(2) - 0.01168 * c(3);
+      expected += w * (x - 0.5) * (x - 0.5);
+      weights += w;
+    }
+    EXPECT_NEAR(variance, expected / weights * double{width} * double{width}, 0.01 * variance);
+  }
+}
+
+}  // namespace
+}  // namespace ds
