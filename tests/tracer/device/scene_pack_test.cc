@@ -76,7 +76,9 @@ TEST(PackLights, SelectionProbabilitiesSumToOneAndNoLightIsStarved) {
     const float high = number(packed.tables, packed.data.light_table + i);
     sum += double{share};
     EXPECT_NEAR(double{high}, sum, 1e-6);
-    if (share > 0) EXPECT_GT(share, 0.1f);
+    if (share > 0) {
+      EXPECT_GT(share, 0.1f);
+    }
   }
   EXPECT_NEAR(sum, 1, 1e-6);
   EXPECT_EQ(number(packed.tables, packed.data.light_table + 4), 1);
@@ -105,7 +107,8 @@ TEST(PackFilter, BoxIsOnePixelWide) {
   const std::vector<float> box = filter(0);
   ASSERT_EQ(box.size(), kernels::k_filter_size + 1u);
   for (std::size_t i = 0; i < box.size(); ++i)
-    EXPECT_NEAR(double{box[i]}, static_cast<double>(i) / kernels::k_filter_size - 0.5, 1e-6);
+    EXPECT_NEAR(double{box[i]}, static_cast<double>(i) / double(kernels::k_filter_size) - 0.5,
+                1e-6);
 }
 
 TEST(PackFilter, BlackmanHarrisIsSymmetricAndAsWideAsSaid) {
@@ -117,7 +120,7 @@ TEST(PackFilter, BlackmanHarrisIsSymmetricAndAsWideAsSaid) {
     for (std::size_t i = 0; i + 1 < table.size(); ++i) {
       EXPECT_NEAR(table[i], -table[table.size() - 1 - i], 2e-3f * width);
       const double middle = 0.5 * (double{table[i]} + double{table[i + 1]});
-      variance += middle * middle / kernels::k_filter_size;
+      variance += middle * middle / double(kernels::k_filter_size);
     }
     // The window's variance by a fine sum in double.
     double expected = 0, weights = 0;
