@@ -14,9 +14,9 @@ namespace {
 
 Camera looking(Vec3 from, Vec3 at, Vec3 up = {0, 0, 1}) {
   Camera camera;
-  camera.position = from;
-  camera.target = at;
-  camera.up = up;
+  camera.position = to_double(from);
+  camera.target = to_double(at);
+  camera.up = to_double(up);
   return camera;
 }
 
@@ -52,7 +52,8 @@ TEST(CameraFrame, ATargetAtThePositionIsAnError) {
 TEST(TanHalf, EqualsTan) {
   for (double degrees = 0.01; degrees < 180; degrees += 0.7) {
     const double want = std::tan(degrees * std::numbers::pi / 360);
-    EXPECT_NEAR(tan_half(degrees) / want, 1, 1e-13) << degrees;
+    // Near 180 degrees tan multiplies the rounding of its argument, in libm's case as in ours.
+    EXPECT_NEAR(tan_half(degrees) / want, 1, degrees < 170 ? 1e-13 : 1e-12) << degrees;
   }
 }
 
