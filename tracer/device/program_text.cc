@@ -143,6 +143,7 @@ void add_lights(const Scene& scene, Features& f) {
 
 bool picks_lobes(const Features& f) {
   return f.mix || Features::number(f.materials, "glossy2") >= 0 ||
+         Features::number(f.materials, "metal2") >= 0 ||
          Features::number(f.materials, "glass") >= 0;
 }
 

@@ -82,11 +82,11 @@ std::vector<float> random_inputs(const Case& material, std::mt19937& random) {
   });
 }
 
-Viewer viewer(double cosine, bool outside) {
+Viewer viewer(double cosine, bool outside, double azimuth) {
   const double sine = std::sqrt(1 - cosine * cosine);
   Viewer v;
-  v.wo = vec(static_cast<float>(sine * std::cos(0.7)), static_cast<float>(sine * std::sin(0.7)),
-             static_cast<float>(cosine));
+  v.wo = vec(static_cast<float>(sine * std::cos(azimuth)),
+             static_cast<float>(sine * std::sin(azimuth)), static_cast<float>(cosine));
   v.outside = outside;
   return v;
 }

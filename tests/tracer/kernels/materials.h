@@ -34,7 +34,7 @@ std::vector<float> white_inputs(const Case& material, float roughness);
 /// Anything a file may say, ends of the ranges included.
 std::vector<float> random_inputs(const Case& material, std::mt19937& random);
 
-/// A viewer at this cosine of the angle to the normal.
-kernels::Viewer viewer(double cosine, bool outside = true);
+/// A viewer at this cosine of the angle to the normal and this azimuth, radians.
+kernels::Viewer viewer(double cosine, bool outside = true, double azimuth = 0.7);
 
 }  // namespace ds::materials

@@ -3,11 +3,14 @@
 // refractive index `index` where that is not 0), with absorption ka over depth d in the coat. On
 // both sides.
 //
-// The coat is GGX with Schlick's Fresnel. What it lets through both ways lights the base:
-//   f = D G2 F(h) / (4 cos_o cos_i) + kd / pi (1 - F(o)) (1 - F(i)) exp(-ka d (1 / cos_o + 1 /
-//   cos_i))
-// which is reciprocal and never above 1 in sum. LuxCore weighs the base by 1 - F(h) instead, which
-// gains energy at grazing.
+// The coat is GGX with Schlick's Fresnel, and what comes back after several reflections among its
+// facets (microfacet.h). What the coat does not reflect lights the base (Kelemen and Szirmay-Kalos
+// 2001, "A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling"):
+//   f = D G2 F(h) / (4 cos_o cos_i) + further reflections
+//       + kd / pi (1 - C(o)) (1 - C(i)) / (1 - mean C) exp(-ka d (1 / cos_o + 1 / cos_i))
+// C(w) being the coat's albedo seen from w. Reciprocal, and over a white base all that comes in
+// goes out, at every roughness. LuxCore has the first reflection only and weighs the base by
+// 1 - F(h), which gains energy at grazing and loses it in a rough coat.
 #pragma once
 
 #include "tracer/kernels/microfacet.h"
@@ -35,12 +38,65 @@ DS_FN real glossy2_absorption(real absorption, real path) {
   return exponential(-absorption * path);
 }
 
-/// Base times cosine of wi.
-DS_FN real3 glossy2_base(const real* p, real3 ks, real3 wo, real3 wi) {
-  const real3 one = splat((real)(1.0f));
-  const real3 passed =
-      mul(sub(one, schlick_fresnel(ks, wo.z)), sub(one, schlick_fresnel(ks, wi.z)));
-  const real3 base = scale(mul(input3(p, glossy2_kd), passed), wi.z * DS_INV_PI);
+/// The coat's facets, its reflectance at normal incidence, and Fresnel's part in what comes back
+/// after several reflections.
+typedef struct {
+  Roughness roughness;
+  Rescattering again;
+  real3 ks, again_fresnel;
+} Coat;
+
+/// Schlick's mean over the cosine-weighted hemisphere: the integral of 2 c (1 - c)^5 is 1/21.
+DS_FN real glossy2_again_fresnel(Rescattering again, real ks) {
+  return rescattered_fresnel(again, fma(1.0f - ks, (real)(1.0f / 21.0f), ks));
+}
+
+DS_FN Coat glossy2_coat(const real* p) {
+  Coat c;
+  c.roughness = roughness_of(p[glossy2_uroughness], p[glossy2_vroughness]);
+  c.again = ggx_rescattering(c.roughness);
+  c.ks = glossy2_normal_reflectance(p);
+  c.again_fresnel =
+      vec(glossy2_again_fresnel(c.again, c.ks.x), glossy2_again_fresnel(c.again, c.ks.y),
+          glossy2_again_fresnel(c.again, c.ks.z));
+  return c;
+}
+
+/// What the coat leaves of the light when it loses `lost` at first and has Schlick's weight
+/// `grazing`.
+DS_FN real glossy2_left(real ks, real again_fresnel, real lost, real grazing) {
+  return clamp01(1.0f - fma(ks, 1.0f - lost - grazing, grazing) - again_fresnel * lost);
+}
+DS_FN real3 glossy2_left3(Coat c, real lost, real grazing) {
+  return vec(glossy2_left(c.ks.x, c.again_fresnel.x, lost, grazing),
+             glossy2_left(c.ks.y, c.again_fresnel.y, lost, grazing),
+             glossy2_left(c.ks.z, c.again_fresnel.z, lost, grazing));
+}
+
+/// 1 - C, seen at this cosine. Of unequal roughnesses the one that reflects more counts, so that no
+/// azimuth gains.
+DS_FN real3 glossy2_passed(Coat c, real cosine) {
+  const real grazing =
+      greater(ggx_grazing_share(c.roughness.x, cosine), ggx_grazing_share(c.roughness.y, cosine));
+  return glossy2_left3(c, rescattered_share(c.again, cosine), grazing);
+}
+
+/// 1 - mean C.
+DS_FN real3 glossy2_mean_passed(Coat c) {
+  const real grazing =
+      lesser(ggx_mean_grazing_share(c.roughness.x), ggx_mean_grazing_share(c.roughness.y));
+  return glossy2_left3(c, c.again.share * c.again.mean, grazing);
+}
+
+/// Base times cosine of wi; `passed` by the coat on the way to wo.
+DS_FN real3 glossy2_base(const real* p, Coat c, real3 passed, real3 wo, real3 wi) {
+  const real3 mean = glossy2_mean_passed(c);
+  const real3 coupled = mul(passed, glossy2_passed(c, wi.z));
+  // A coat that lets nothing through has nothing under it: 0 / 1e-6.
+  const real3 through =
+      vec(coupled.x / greater(mean.x, (real)(1e-6f)), coupled.y / greater(mean.y, (real)(1e-6f)),
+          coupled.z / greater(mean.z, (real)(1e-6f)));
+  const real3 base = scale(mul(input3(p, glossy2_kd), through), wi.z * DS_INV_PI);
   if (!any_lane(p[glossy2_d] > 0.0f)) return base;
   const real path =
       p[glossy2_d] * (1.0f / greater(wo.z, (real)(1e-4f)) + 1.0f / greater(wi.z, (real)(1e-4f)));
@@ -49,45 +105,50 @@ DS_FN real3 glossy2_base(const real* p, real3 ks, real3 wo, real3 wi) {
                        glossy2_absorption(ka.z, path)));
 }
 
-/// Probability of sampling the coat: its share of what is reflected, as seen from wo.
-DS_FN real glossy2_coat_probability(const real* p, real3 ks, real3 wo) {
-  const real coat = luminance(schlick_fresnel(ks, wo.z));
-  const real base = luminance(input3(p, glossy2_kd)) * (1.0f - coat);
-  const real sum = coat + base;
-  return choose(sum > 0.0f, greater(coat, (real)(1e-10f)) / greater(sum, (real)(1e-10f)),
-                (real)(0.5f));
+/// Probability of sampling the coat's first reflection: the coat's share of what is reflected, as
+/// seen from wo, without what comes back after several reflections. That is sampled as the base is.
+DS_FN real glossy2_lobe_probability(const real* p, Coat c, real3 passed, real3 wo) {
+  const real through = luminance(passed);
+  const real coat = 1.0f - through;
+  const real sum = fma(luminance(input3(p, glossy2_kd)), through, coat);
+  const real share = choose(
+      sum > 0.0f, greater(coat, (real)(1e-10f)) / greater(sum, (real)(1e-10f)), (real)(0.5f));
+  return clamp01(share) * (1.0f - rescattered_share(c.again, wo.z));
 }
 
-/// Both lobes at wi, which is above the surface.
-DS_FN BsdfValue glossy2_both(const real* p, real3 wo, real3 wi) {
-  const Roughness r = roughness_of(p[glossy2_uroughness], p[glossy2_vroughness]);
-  const real3 ks = glossy2_normal_reflectance(p);
+/// All lobes at wi, which is above the surface; `first` is the probability above.
+DS_FN BsdfValue glossy2_all(const real* p, Coat c, real3 passed, real first, real3 wo, real3 wi) {
   const real3 h = half_vector(wo, wi);
-  const Lobe lobe = ggx_lobe(r, wo, wi, h);
-  const real coat = glossy2_coat_probability(p, ks, wo);
+  const Lobe lobe = ggx_lobe(c.roughness, wo, wi, h);
   BsdfValue v;
-  v.value = add_scaled(glossy2_base(p, ks, wo, wi), schlick_fresnel(ks, dot(wo, h)), lobe.specular);
-  v.pdf = coat * lobe.pdf + (1.0f - coat) * wi.z * DS_INV_PI;
+  v.value = add_scaled(glossy2_base(p, c, passed, wo, wi), schlick_fresnel(c.ks, dot(wo, h)),
+                       lobe.specular);
+  v.value = add_scaled(v.value, c.again_fresnel, rescattered(c.again, wo, wi));
+  v.pdf = first * lobe.pdf + (1.0f - first) * wi.z * DS_INV_PI;
   return v;
 }
 
 DS_FN BsdfValue glossy2_evaluate(const real* p, Viewer viewer, real3 wi) {
+  const Coat c = glossy2_coat(p);
+  const real3 passed = glossy2_passed(c, viewer.wo.z);
+  const real first = glossy2_lobe_probability(p, c, passed, viewer.wo);
   const mask above = wi.z > 0.0f;
-  BsdfValue v = glossy2_both(p, viewer.wo, choose(above, wi, viewer.wo));
+  BsdfValue v = glossy2_all(p, c, passed, first, viewer.wo, choose(above, wi, viewer.wo));
   v.value = choose(above, v.value, splat((real)(0.0f)));
   v.pdf = choose(above, v.pdf, (real)(0.0f));
   return v;
 }
 
 DS_FN BsdfSample glossy2_sample(const real* p, Viewer viewer, real2 u, real2 lobe) {
-  const Roughness r = roughness_of(p[glossy2_uroughness], p[glossy2_vroughness]);
-  const real3 ks = glossy2_normal_reflectance(p);
+  const Coat c = glossy2_coat(p);
+  const real3 passed = glossy2_passed(c, viewer.wo.z);
+  const real first = glossy2_lobe_probability(p, c, passed, viewer.wo);
   BsdfSample s = no_sample();
-  s.glossy = lobe.x < glossy2_coat_probability(p, ks, viewer.wo);
-  const real3 mirrored = reflect_about(viewer.wo, ggx_visible_normal(r, viewer.wo, u));
+  s.glossy = lobe.x < first;
+  const real3 mirrored = reflect_about(viewer.wo, ggx_visible_normal(c.roughness, viewer.wo, u));
   s.wi = choose(s.glossy, mirrored, cosine_hemisphere(u));
   s.valid = s.wi.z > 0.0f;
-  const BsdfValue v = glossy2_both(p, viewer.wo, choose(s.valid, s.wi, viewer.wo));
+  const BsdfValue v = glossy2_all(p, c, passed, first, viewer.wo, choose(s.valid, s.wi, viewer.wo));
   s.pdf = v.pdf;
   s.weight = scale(v.value, 1.0f / greater(v.pdf, (real)(1e-20f)));
   return s;
