@@ -19,6 +19,9 @@
 
 #define k_slab_error 4.76837158203125e-7f /* 8 half-ulps */
 #define k_far_scale 1.0000005f
+/// A hit nearer than 4 half-ulps of the triangle's farthest corner is within its test's error: a
+/// ray that starts on a small triangle would else meet a large one in the same plane, from behind.
+#define k_least_t 2.4e-7f
 #define k_leaf_bit 0x80000000u
 
 typedef struct {
@@ -190,7 +193,9 @@ DS_FN LeafHits test_leaf(const __global float8* leaf, const Ray* ray, const Shea
   hits.weight2 = w;
   const int8 inside =
       ((u >= 0.0f) & (v >= 0.0f) & (w >= 0.0f)) | ((u <= 0.0f) & (v <= 0.0f) & (w <= 0.0f));
-  hits.hits = lanes_set(inside & (sum != 0.0f) & (hits.t > 0.0f) & (hits.t <= t_max));
+  const float8 farthest = greater8(fabs(az), greater8(fabs(bz), fabs(cz)));
+  const float8 least = farthest * (k_least_t * fabs(s->shear_z));
+  hits.hits = lanes_set(inside & (sum != 0.0f) & (hits.t > least) & (hits.t <= t_max));
   return hits;
 }
 

@@ -148,14 +148,13 @@ DS_FN Surface surface_of(const LaneHits* hits, real3 wo) {
   const real3 p1 = hit_word3(hits, k_triangle_positions + 3);
   const real3 p2 = hit_word3(hits, k_triangle_positions + 6);
   Surface s;
-  s.position = add_scaled(add_scaled(scale(p0, b0), p1, b1), p2, b2);
-  const real3 size = vec(absolute(p0.x) + absolute(p1.x) + absolute(p2.x),
-                         absolute(p0.y) + absolute(p1.y) + absolute(p2.y),
-                         absolute(p0.z) + absolute(p1.z) + absolute(p2.z));
-  // Of the greatest component, also across it: along a ray that grazes the plane of a coordinate,
-  // the triangle test's error comes from the long axes.
-  s.error = splat(max_component(size) * k_position_error);
-  const real3 own = unit(cross(scale(sub(p1, p0), (real)(1e6f)), scale(sub(p2, p0), (real)(1e6f))));
+  const real3 e1 = sub(p1, p0);
+  const real3 e2 = sub(p2, p0);
+  // From the first corner along the edges: far from the origin a mean of the corners would be
+  // rounded several times in units of the coordinates, this is once.
+  s.position = add(p0, add_scaled(scale(e1, b1), e2, b2));
+  s.error = splat(position_error(p0, e1, e2));
+  const real3 own = triangle_normal(e1, e2);
   s.outside = dot(own, wo) >= 0.0f;
   const real side = choose(s.outside, (real)(1.0f), (real)(-1.0f));
   s.normal = scale(own, side);

@@ -23,9 +23,18 @@ DS_FN real3 offset_origin(real3 position, real3 error, real3 normal, real3 direc
   return add_scaled(position, normal, with_sign_of(distance, dot(direction, normal)));
 }
 
-/// Rounding of a point made from three corners by barycentric weights: 8 half-ulps of the
-/// coordinate's magnitude.
-#define k_position_error 4.8e-7f
+/// Rounding of a point p0 + b1 e1 + b2 e2 of a triangle, and of the origin of a ray offset from it:
+/// 2 half-ulps of the greatest coordinate, and 8 of the greatest extent for the edges, the weights
+/// and the triangle test, which sees the corners from where the ray starts. Of the greatest
+/// component, also across it: along a ray that grazes the plane of a coordinate, the test's error
+/// comes from the long axes.
+DS_FN real position_error(real3 p0, real3 e1, real3 e2) {
+  const real3 size =
+      vec(greater(absolute(e1.x), absolute(e2.x)), greater(absolute(e1.y), absolute(e2.y)),
+          greater(absolute(e1.z), absolute(e2.z)));
+  const real magnitude = max_component(vec(absolute(p0.x), absolute(p0.y), absolute(p0.z)));
+  return fma(max_component(size), (real)(6e-7f), magnitude * 1.2e-7f);
+}
 
 /// Turns a shading normal that faces away from the viewer (interpolation does that at silhouettes)
 /// just so far that it does not: cos >= 0.01 afterwards. Continuous, so no line shows where it sets

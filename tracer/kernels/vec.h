@@ -59,6 +59,16 @@ DS_FN real3 unit(real3 a) {
   const real squared = greater(dot(a, a), (real)(1e-30f));
   return scale(a, 1.0f / sqrt(squared));
 }
+/// Unit normal of a triangle whose edges from its first corner these are; zero where it has no
+/// area. Edges are scaled by their greatest component, 1e-37 to 1e37: no triangle is so small or so
+/// large that its normal is lost.
+DS_FN real3 triangle_normal(real3 e1, real3 e2) {
+  const real3 size =
+      vec(greater(absolute(e1.x), absolute(e2.x)), greater(absolute(e1.y), absolute(e2.y)),
+          greater(absolute(e1.z), absolute(e2.z)));
+  const real s = 1.0f / greater(max_component(size), (real)(1e-37f));
+  return unit(cross(scale(e1, s), scale(e2, s)));
+}
 DS_FN real3 load3(DS_GLOBAL float* p, natural i) {
   return vec(load(p, i), load(p, i + 1u), load(p, i + 2u));
 }

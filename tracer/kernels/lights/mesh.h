@@ -40,7 +40,7 @@ DS_FN LightSample mesh_sample(LightTables t, uint at, real3 from, real2 u) {
   const real3 e1 = sub(load3(t.triangles, row + 3u), p0);
   const real3 e2 = sub(load3(t.triangles, row + 6u), p0);
   LightSample s = no_light();
-  const real3 normal = unit(cross(e1, e2));
+  const real3 normal = triangle_normal(e1, e2);
   const real3 point = add_scaled(add_scaled(p0, e1, b.x), e2, b.y);
   const real3 way = sub(point, from);
   const real squared = greater(dot(way, way), (real)(1e-20f));

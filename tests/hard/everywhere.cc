@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/hard/everywhere.h"
+
+#include "tracer/scene/type_tables.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+namespace ds::hard {
+
+std::string Way::name() const {
+  return fmt::format("{}, N = {}, {} program", math == MathMode::strict ? "strict" : "fast", lanes,
+                     full_program ? "full" : "specialised");
+}
+
+std::vector<Way> ways() {
+  std::vector<Way> all;
+  for (const MathMode math : {MathMode::strict, MathMode::fast})
+    for (const int lanes : {8, 1})
+      for (const bool full : {false, true})
+        all.push_back({math, lanes, full});
+  return all;
+}
+
+namespace {
+
+Tracer& tracer_of(const Way& way) {
+  static std::map<std::string, std::unique_ptr<Tracer>> tracers;
+  std::unique_ptr<Tracer>& tracer = tracers[way.name()];
+  if (!tracer) {
+    TracerOptions options = pictures::tracer_options();
+    options.lanes = way.lanes;
+    options.full_program = way.full_program;
+    tracer = std::make_unique<Tracer>(options);
+  }
+  return *tracer;
+}
+
+}  // namespace
+
+Film trace(const pictures::Picture& picture, const Way& way) {
+  Tracer& tracer = tracer_of(way);
+  tracer.set_scene(picture.scene);
+  EngineSettings engine = picture.engine;
+  engine.math = way.math;
+  return tracer.trace(picture.camera, engine);
+}
+
+void everywhere(const pictures::Picture& picture, const std::function<void(const Film&)>& check) {
+  std::string strict_hash;
+  for (const Way& way : ways()) {
+    SCOPED_TRACE(picture.name + ": " + way.name());
+    const Film film = trace(picture, way);
+    EXPECT_EQ(film.rejected_samples, 0u);
+    EXPECT_TRUE(std::all_of(film.rgb.begin(), film.rgb.end(),
+                            [](float v) { return v >= 0 && std::isfinite(v); }));
+    if (way.math == MathMode::strict) {
+      const std::string hash = pictures::film_hash(film);
+      if (strict_hash.empty()) strict_hash = hash;
+      EXPECT_EQ(hash, strict_hash);
+    }
+    check(film);
+  }
+}
+
+pictures::Estimate estimate(const pictures::Picture& picture, const Way& way, int pictures,
+                            std::uint64_t first_seed) {
+  Tracer& tracer = tracer_of(way);
+  tracer.set_scene(picture.scene);
+  EngineSettings engine = picture.engine;
+  engine.math = way.math;
+  std::vector<double> means;
+  for (int i = 0; i < pictures; ++i) {
+    engine.seed = pictures::wide_seed(first_seed + static_cast<std::uint64_t>(i));
+    means.push_back(mean_of(tracer.trace(picture.camera, engine)));
+  }
+  pictures::Estimate e;
+  for (const double m : means)
+    e.mean += m / pictures;
+  double squares = 0;
+  for (const double m : means)
+    squares += (m - e.mean) * (m - e.mean);
+  e.error = std::sqrt(squares / (pictures - 1) / pictures);
+  return e;
+}
+
+std::vector<std::string> materials(bool with_transparent) {
+  std::vector<std::string> names;
+  for (const NodeType& type : material_types())
+    if (type.name != "mix" && (with_transparent || find_input(type, "kt") < 0))
+      names.emplace_back(type.name);
+  return names;
+}
+
+pictures::Picture deep_picture(int pixels, int spp, int roulette) {
+  pictures::Picture p;
+  p.engine.width = p.engine.height = pixels;
+  p.engine.spp = spp;
+  p.engine.seed = 0x5eed5eed12345678u;
+  p.engine.depth_total = p.engine.depth_diffuse = p.engine.depth_glossy = p.engine.depth_specular =
+      1000;
+  p.engine.roulette_depth = roulette;
+  p.engine.filter_width = 0;
+  return p;
+}
+
+double worst_difference(const Film& film, double expected) {
+  double worst = 0;
+  for (const float v : film.rgb)
+    worst = std::max(worst, std::isfinite(v) ? std::fabs(double{v} - expected) : 1e300);
+  return worst;
+}
+
+double mean_of(const Film& film) {
+  double sum = 0;
+  for (const float v : film.rgb)
+    sum += double{v};
+  return sum / static_cast<double>(film.rgb.size());
+}
+
+}  // namespace ds::hard
