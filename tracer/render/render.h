@@ -73,8 +73,8 @@ class Tracer {
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
 
-  /// Packs the scene (images are loaded), builds its BVH and its program. Throws Error(asset) or
-  /// Error(device).
+  /// Takes the scene (images are loaded), checks its numbers (scene_check.h); trees and programs
+  /// are built when the first picture needs them. Throws Error(asset) or Error(device).
   void set_scene(const Scene& scene);
   /// Path-traces the scene set. Calls `progress` about twice a second; stops early with
   /// Error(cancelled) once `*stop`.

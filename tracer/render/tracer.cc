@@ -7,6 +7,7 @@
 #include "tracer/render/images.h"
 #include "tracer/render/render.h"
 #include "tracer/render/view.h"
+#include "tracer/scene/scene_check.h"
 #include "tracer/scene/sdl.h"
 
 #include <algorithm>
@@ -122,9 +123,12 @@ std::string Tracer::device_name() const {
 }
 
 void Tracer::set_scene(const Scene& scene) {
-  state_->scene = scene;
-  load_images(*state_->scene);
+  state_->scene.reset();
   state_->packed_for.reset();
+  Scene checked = scene;
+  load_images(checked);
+  check_scene(checked);
+  state_->scene = std::move(checked);
 }
 
 Film Tracer::trace(const Camera& camera, const EngineSettings& engine,

@@ -44,6 +44,10 @@ double tan_half(double angle_deg) {
 }
 
 CameraFrame camera_frame(const Camera& camera) {
+  for (const Vec3d& v : {camera.position, camera.target, camera.up})
+    if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
+      fail(ErrorKind::recipe, "a camera's position, target and up must be finite, got {} {} {}",
+           v.x, v.y, v.z);
   CameraFrame f;
   f.forward = normalized(camera.target - camera.position);
   if (f.forward == Vec3d{}) fail(ErrorKind::recipe, "a camera's target must not be its position");

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/scene/scene_check.h"
+
+#include "tracer/base/error.h"
+
+#include <cmath>
+#include <cstddef>
+
+namespace ds {
+namespace {
+
+bool is_finite(Vec3 v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+bool is_near(Vec3 v) {
+  const auto near = [](float x) { return std::fabs(double{x}) <= k_farthest_coordinate; };
+  return near(v.x) && near(v.y) && near(v.z);  // false for NaN
+}
+bool is_radiance(Vec3 v) {
+  return is_finite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0;
+}
+
+bool is_index(int i, std::size_t count) {
+  return i >= 0 && static_cast<std::size_t>(i) < count;
+}
+
+void check_positions(const Object& object) {
+  const Mesh& mesh = object.mesh;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3 p = mesh.positions[v];
+    if (!is_near(p))
+      fail(ErrorKind::asset, "object {}: vertex {} must be finite and within {:g}, got {} {} {}",
+           object.name, v, k_farthest_coordinate, p.x, p.y, p.z);
+  }
+}
+
+void check_attributes(const Object& object) {
+  const Mesh& mesh = object.mesh;
+  const auto check_count = [&](const char* what, std::size_t count) {
+    if (count != 0 && count != mesh.positions.size())
+      fail(ErrorKind::asset, "object {}: must have {} {} as it has vertices, got {}", object.name,
+           mesh.positions.size(), what, count);
+  };
+  check_count("normals", mesh.normals.size());
+  check_count("uvs", mesh.uvs.size());
+  for (std::size_t v = 0; v < mesh.normals.size(); ++v)
+    if (!is_finite(mesh.normals[v]))
+      fail(ErrorKind::asset, "object {}: normal {} must be finite", object.name, v);
+  for (std::size_t v = 0; v < mesh.uvs.size(); ++v)
+    if (!std::isfinite(mesh.uvs[v].x) || !std::isfinite(mesh.uvs[v].y))
+      fail(ErrorKind::asset, "object {}: uv {} must be finite", object.name, v);
+}
+
+void check_object(const Scene& scene, const Object& object) {
+  check_positions(object);
+  check_attributes(object);
+  for (const auto& triangle : object.mesh.triangles)
+    for (const std::uint32_t i : triangle)
+      if (i >= object.mesh.positions.size())
+        fail(ErrorKind::asset, "object {}: a triangle's index must be below {}, got {}",
+             object.name, object.mesh.positions.size(), i);
+  if (!is_index(object.material, scene.materials.size()))
+    fail(ErrorKind::asset, "object {}: its material must be one of {}, got {}", object.name,
+         scene.materials.size(), object.material);
+}
+
+void check_material(const Material& material) {
+  for (const TextureRef& input : material.inputs)
+    if (!is_finite(input.constant))
+      fail(ErrorKind::asset, "material {}: a value must be finite, got {} {} {}", material.name,
+           input.constant.x, input.constant.y, input.constant.z);
+  const Vec3 emission = material.emission.constant;
+  if (material.emits && !is_radiance(emission))
+    fail(ErrorKind::asset, "material {}: emission must be finite and not negative, got {} {} {}",
+         material.name, emission.x, emission.y, emission.z);
+}
+
+void check_light(const Scene& scene, const Light& light) {
+  if (!is_radiance(light.color))
+    fail(ErrorKind::asset, "light {}: its colour must be finite and not negative, got {} {} {}",
+         light.name, light.color.x, light.color.y, light.color.z);
+  const Vec3 p = light.position;
+  if (!is_near(p))
+    fail(ErrorKind::asset, "light {}: its position must be finite and within {:g}, got {} {} {}",
+         light.name, k_farthest_coordinate, p.x, p.y, p.z);
+  if (!is_finite(light.direction))
+    fail(ErrorKind::asset, "light {}: its direction must be finite", light.name);
+  if (light.kind == LightKind::infinite && !is_index(light.image, scene.images.size()))
+    fail(ErrorKind::asset, "light {}: its image must be one of {}, got {}", light.name,
+         scene.images.size(), light.image);
+}
+
+/// Texels already loaded; files are checked as they are decoded (render/images.cc).
+void check_image(const Image& image) {
+  for (std::size_t i = 0; i < image.rgb.size(); ++i)
+    if (!(image.rgb[i] >= 0 && std::isfinite(image.rgb[i])))
+      fail(ErrorKind::asset, "image {}: texel {} must be finite and not negative, got {}",
+           image.file.empty() ? image.made_from : image.file.string(), i / 3, image.rgb[i]);
+}
+
+}  // namespace
+
+void check_scene(const Scene& scene) {
+  for (const Object& object : scene.objects)
+    check_object(scene, object);
+  for (const Material& material : scene.materials)
+    check_material(material);
+  for (const Light& light : scene.lights)
+    check_light(scene, light);
+  for (const Image& image : scene.images)
+    check_image(image);
+}
+
+}  // namespace ds
