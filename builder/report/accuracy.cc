@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/report/accuracy.h"
+
+#include "builder/build/keys.h"
+#include "builder/report/choice_costs.h"
+#include "builder/report/flip.h"
+#include "builder/report/ladder.h"
+#include "builder/report/ssim.h"
+#include "tracer/base/error.h"
+#include "tracer/base/hash.h"
+#include "tracer/render/images.h"
+#include "tracer/scene/sdl.h"
+
+#include <algorithm>
+#include <chrono>
+#include <tuple>
+
+namespace ds {
+namespace {
+
+class RealSceneTracer : public SceneTracer {
+ public:
+  explicit RealSceneTracer(const TracerOptions& options) : tracer_(options) {}
+
+  void set_scene(const Scene& scene) override { tracer_.set_scene(scene); }
+  Film trace(const Camera& camera, const EngineSettings& engine,
+             const std::atomic<bool>& stop) override {
+    return tracer_.trace(camera, engine, {}, &stop);
+  }
+  Geometry trace_geometry(const Camera& camera, int width, int height) override {
+    return tracer_.trace_geometry(camera, width, height);
+  }
+  std::string device() const override { return tracer_.device_name(); }
+  double now() const override {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+  }
+
+ private:
+  Tracer tracer_;
+};
+
+/// Most rays of a supersampled mask: its tables then take about 300 MB.
+constexpr double k_most_geometry_rays = 4096.0 * 4096.0;
+constexpr int k_most_side = 16384;
+
+int finest_factor(int width, int height) {
+  int factor = 16;
+  while (factor > 1 && (double(width) * factor * height * factor > k_most_geometry_rays ||
+                        std::max(width, height) * factor > k_most_side))
+    factor /= 2;
+  return factor;
+}
+
+std::vector<GeometryRung> measure_geometry(SceneTracer& tracer, const Subject& subject) {
+  const int width = subject.engine.width;
+  const int height = subject.engine.height;
+  const int finest = finest_factor(width, height);
+  const auto traced = [&](int factor) {
+    return coverage_of(tracer.trace_geometry(subject.camera, width * factor, height * factor),
+                       factor);
+  };
+  const Coverage reference = traced(finest);  // compiles the program too, before any time is taken
+  std::vector<GeometryRung> rungs;
+  for (int factor = 1; factor < finest; factor *= 2) {
+    const double start = tracer.now();
+    const Coverage coverage = traced(factor);
+    rungs.push_back({factor * factor, tracer.now() - start, geometry_errors(coverage, reference)});
+  }
+  return rungs;
+}
+
+std::vector<Target> targets_of(const PairAccuracy& pair) {
+  std::vector<Target> targets;
+  if (!pair.law) return targets;
+  for (const double error : k_target_errors) {
+    const std::optional<Interval> spp = pair.law->n_for(error);
+    if (!spp) continue;
+    const auto seconds = [&](double n) { return std::max(0.0, pair.seconds.at(n)); };
+    targets.push_back({error,
+                       *spp,
+                       {seconds(spp->value), seconds(spp->low), seconds(spp->high)},
+                       spp->value < pair.law->least_n || spp->value > pair.law->most_n});
+  }
+  return targets;
+}
+
+void fit(PairAccuracy& pair) {
+  std::vector<double> spp;
+  std::vector<double> errors;
+  std::vector<double> seconds;
+  for (const Rung& rung : pair.ladder) {
+    spp.push_back(rung.spp);
+    seconds.push_back(rung.seconds.value);
+    const auto error = rung.metrics.find(Metric::error);
+    errors.push_back(error == rung.metrics.end() ? 0 : error->second.value);
+  }
+  pair.law = fit_power_law(spp, errors);
+  pair.seconds = fit_line(spp, seconds);
+  pair.targets = targets_of(pair);
+}
+
+Subject subject_of(const ImageSpec& image, const Recipe& recipe, Inputs& inputs) {
+  Subject subject;
+  subject.scene =
+      compose(inputs.environment(image.environment_folder), inputs.material(image.material_file),
+              inputs.model_mesh(image.model_file, recipe.normalise));
+  load_images(subject.scene);
+  subject.camera = image.camera;
+  subject.engine = image.engine;
+  return subject;
+}
+
+}  // namespace
+
+std::unique_ptr<SceneTracer> make_scene_tracer(const TracerOptions& options) {
+  return std::make_unique<RealSceneTracer>(options);
+}
+
+const char* metric_name(Metric metric) {
+  switch (metric) {
+    case Metric::error:
+      return "error";
+    case Metric::rel_mse:
+      return "relmse";
+    case Metric::rel_mse_trimmed:
+      return "relmse_trimmed";
+    case Metric::psnr_db:
+      return "psnr_db";
+    case Metric::ssim:
+      return "ssim";
+    case Metric::flip:
+      return "flip";
+  }
+  assertion_failed("a Metric", __FILE__, __LINE__);
+}
+
+std::vector<PairChoice> representative_images(const std::vector<ImageSpec>& images) {
+  using Pair = std::pair<std::string, std::string>;
+  std::map<Pair, PairChoice> pairs;
+  std::map<Pair, std::pair<std::uint64_t, std::string>> least;
+  for (const ImageSpec& image : images) {
+    const Pair pair{image.environment_name, image.material_name};
+    const std::pair<std::uint64_t, std::string> rank{hash64_text("accuracy " + image.id), image.id};
+    const auto found = least.find(pair);
+    if (found == least.end() || rank < found->second) {
+      least[pair] = rank;
+      pairs[pair].image = image;
+    }
+    ++pairs[pair].images;
+  }
+  std::vector<PairChoice> chosen;
+  for (auto& [pair, choice] : pairs)
+    chosen.push_back(std::move(choice));
+  return chosen;
+}
+
+Accuracy measure_accuracy(const Recipe& recipe, Inputs& inputs, SceneTracer& tracer,
+                          const AccuracyOptions& options,
+                          const std::function<void(const std::string&)>& told,
+                          const std::atomic<bool>& stop) {
+  Accuracy accuracy{recipe.name, tracer.device(), recipe.engine, options, {}};
+  if (accuracy.options.most_spp == 0) accuracy.options.most_spp = std::max(16, recipe.engine.spp);
+  const std::vector<PairChoice> pairs = representative_images(expand(recipe));
+  for (const PairChoice& chosen : pairs) {
+    told(fmt::format("{} of {}: {} in {}, {}", accuracy.pairs.size() + 1, pairs.size(),
+                     chosen.image.material_name, chosen.image.environment_name, chosen.image.id));
+    const Subject subject = subject_of(chosen.image, recipe, inputs);
+    const ToneMap& tone_map =
+        tone_map_of(recipe, inputs.environment(chosen.image.environment_folder));
+    PairAccuracy pair;
+    pair.environment = chosen.image.environment_name;
+    pair.material = chosen.image.material_name;
+    pair.image = chosen.image.id;
+    pair.images = chosen.images;
+    measure_ladder(pair, tracer, subject, tone_map, accuracy.options, stop);
+    fit(pair);
+    pair.geometry = measure_geometry(tracer, subject);
+    if (options.choices) pair.choices = measure_choices(tracer, subject, accuracy.options, stop);
+    accuracy.pairs.push_back(std::move(pair));
+  }
+  return accuracy;
+}
+
+}  // namespace ds

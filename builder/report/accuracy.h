@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/build/inputs.h"
+#include "builder/recipe/recipe.h"
+#include "builder/report/choices.h"
+#include "builder/report/fit.h"
+#include "builder/report/geometry_errors.h"
+#include "builder/report/image_errors.h"
+
+#include <array>
+#include <atomic>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ds {
+
+/// Traces scenes that stand in no file. Virtual so that the measuring can be tested against noise
+/// of a known law.
+class SceneTracer {
+ public:
+  virtual ~SceneTracer() = default;
+  virtual void set_scene(const Scene& scene) = 0;
+  virtual Film trace(const Camera& camera, const EngineSettings& engine,
+                     const std::atomic<bool>& stop) = 0;
+  virtual Geometry trace_geometry(const Camera& camera, int width, int height) = 0;
+  virtual std::string device() const = 0;
+  /// Seconds that are charged to what was traced between two calls: the wall clock's.
+  virtual double now() const = 0;
+};
+std::unique_ptr<SceneTracer> make_scene_tracer(const TracerOptions& options);
+
+/// How much is measured.
+struct AccuracyOptions {
+  int most_spp = 0;   ///< the ladder's last rung, >= 4; 0: the recipe's spp, at least 16
+  int seeds = 4;      ///< independent pictures a rung, 2 .. 64: the error bars come from them
+  int reference = 8;  ///< each half of a reference has this many times most_spp, >= 2
+  bool choices = true;
+};
+
+/// What a picture's error is told in. `error` is relative RMS, the square root of
+/// LinearErrors::mean_square: what a manifest's relative_error estimates.
+enum class Metric { error, rel_mse, rel_mse_trimmed, psnr_db, ssim, flip };
+inline constexpr std::array k_metrics{Metric::error,   Metric::rel_mse, Metric::rel_mse_trimmed,
+                                      Metric::psnr_db, Metric::ssim,    Metric::flip};
+/// "error", "relmse", "relmse_trimmed", "psnr_db", "ssim", "flip": in CSV and JSON.
+const char* metric_name(Metric metric);
+
+/// One rung of the ladder: `seeds` pictures of equal spp.
+struct Rung {
+  int spp = 0;
+  Interval seconds;                    ///< a picture's tracing, median and range over the seeds
+  std::map<Metric, Interval> metrics;  ///< without those that could not be told
+  std::optional<double> estimate;      ///< mean of Film::relative_error
+};
+
+struct GeometryRung {
+  int rays = 0;  ///< a pixel
+  double seconds = 0;
+  GeometryErrors errors;
+};
+
+/// What a choice costs beside the subject as the recipe has it.
+struct ChoiceCost {
+  Choice choice;
+  Interval time;                ///< its tracing over the recipe's, median and range over the seeds
+  std::optional<double> noise;  ///< its own noise (Film::relative_error) over the recipe's
+  double bias = 0;  ///< relative RMS difference it makes to a picture without noise; 0 where the
+                    ///< difference is lost in the noise
+};
+
+/// Where an error is reached.
+struct Target {
+  double error = 0;
+  Interval spp, seconds;
+  bool extrapolated = false;  ///< beyond the ladder
+};
+
+/// All that was measured of one environment with one material.
+struct PairAccuracy {
+  std::string environment, material, image;
+  std::uint64_t images = 0;  ///< of the recipe, that show this pair
+  double setup_seconds = 0;  ///< loading, tree and program, before the first sample
+  std::vector<Rung> ladder;
+  std::optional<PowerLaw> law;  ///< of Metric::error against spp
+  Line seconds;                 ///< against spp
+  std::vector<Target> targets;
+  double reference_error = 0;      ///< relative RMS of the reference, by its two halves
+  std::map<Metric, double> floor;  ///< what SSIM and FLIP say of the reference's halves
+  std::vector<GeometryRung> geometry;
+  std::vector<ChoiceCost> choices;
+};
+
+struct Accuracy {
+  std::string recipe, device;
+  EngineSettings engine;
+  AccuracyOptions options;
+  std::vector<PairAccuracy> pairs;
+};
+
+/// Which image stands for each environment and material: the one whose id has the least hash among
+/// those that show both, so adding models seldom changes it. Ordered by environment, then material.
+struct PairChoice {
+  ImageSpec image;
+  std::uint64_t images = 0;
+};
+std::vector<PairChoice> representative_images(const std::vector<ImageSpec>& images);
+
+/// Errors that the report says the time of.
+inline constexpr std::array k_target_errors{0.05, 0.02, 0.01};
+
+/// Measures every pair of the recipe. `told` hears what is measured next. Throws Error(cancelled)
+/// soon after `stop` is set.
+Accuracy measure_accuracy(const Recipe& recipe, Inputs& inputs, SceneTracer& tracer,
+                          const AccuracyOptions& options,
+                          const std::function<void(const std::string&)>& told,
+                          const std::atomic<bool>& stop);
+
+}  // namespace ds

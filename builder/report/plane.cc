@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/report/plane.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ds {
+namespace {
+
+int radius_of(const Taps& taps) {
+  return static_cast<int>(taps.size() / 2);
+}
+
+}  // namespace
+
+Taps gaussian_taps(double sigma, int radius) {
+  Taps taps;
+  for (int x = -radius; x <= radius; ++x)
+    taps.push_back(std::exp(-double(x) * x / (2 * sigma * sigma)));
+  return taps;
+}
+
+Taps normalised(Taps taps) {
+  const double sum = std::accumulate(taps.begin(), taps.end(), 0.0);
+  for (double& tap : taps)
+    tap /= sum;
+  return taps;
+}
+
+Plane filtered(const Plane& plane, const Taps& across, const Taps& down) {
+  Plane half(plane.width, plane.height);
+  const int rx = radius_of(across);
+  for (int y = 0; y < plane.height; ++y)
+    for (int x = 0; x < plane.width; ++x) {
+      double sum = 0;
+      for (int i = -rx; i <= rx; ++i)
+        sum += across[static_cast<std::size_t>(i + rx)] *
+               plane.at(std::clamp(x + i, 0, plane.width - 1), y);
+      half.at(x, y) = sum;
+    }
+  Plane whole(plane.width, plane.height);
+  const int ry = radius_of(down);
+  for (int i = -ry; i <= ry; ++i)
+    for (int y = 0; y < plane.height; ++y) {
+      const int from = std::clamp(y + i, 0, plane.height - 1);
+      for (int x = 0; x < plane.width; ++x)
+        whole.at(x, y) += down[static_cast<std::size_t>(i + ry)] * half.at(x, from);
+    }
+  return whole;
+}
+
+}  // namespace ds

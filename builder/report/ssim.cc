@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/report/ssim.h"
+
+#include "builder/report/plane.h"
+#include "tracer/base/error.h"
+
+#include <cstdint>
+
+namespace ds {
+namespace {
+
+constexpr int k_radius = 5;
+constexpr double k_sigma = 1.5;
+constexpr double k_c1 = 0.01 * 255 * 0.01 * 255;
+constexpr double k_c2 = 0.03 * 255 * 0.03 * 255;
+
+Plane luma(const Picture& picture) {
+  DS_ASSERT(picture.channels == 3);
+  Plane plane(picture.width, picture.height);
+  const std::uint8_t* p = picture.pixels.data();
+  for (double& value : plane.values) {
+    value = 0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2];
+    p += 3;
+  }
+  return plane;
+}
+
+Plane product(const Plane& a, const Plane& b) {
+  Plane plane = a;
+  for (std::size_t i = 0; i < plane.values.size(); ++i)
+    plane.values[i] *= b.values[i];
+  return plane;
+}
+
+}  // namespace
+
+std::optional<double> ssim(const Picture& x, const Picture& y) {
+  DS_ASSERT(x.width == y.width && x.height == y.height);
+  if (x.width <= 2 * k_radius || x.height <= 2 * k_radius) return std::nullopt;
+  const Taps taps = normalised(gaussian_taps(k_sigma, k_radius));
+  const auto blur = [&](const Plane& plane) { return filtered(plane, taps, taps); };
+  const Plane a = luma(x);
+  const Plane b = luma(y);
+  const Plane mean_a = blur(a);
+  const Plane mean_b = blur(b);
+  const Plane square_a = blur(product(a, a));
+  const Plane square_b = blur(product(b, b));
+  const Plane cross = blur(product(a, b));
+  double sum = 0;
+  // Windows that reach over the border are left out.
+  for (int row = k_radius; row < x.height - k_radius; ++row)
+    for (int column = k_radius; column < x.width - k_radius; ++column) {
+      const double m = mean_a.at(column, row);
+      const double n = mean_b.at(column, row);
+      const double variance_a = square_a.at(column, row) - m * m;
+      const double variance_b = square_b.at(column, row) - n * n;
+      const double covariance = cross.at(column, row) - m * n;
+      sum += (2 * m * n + k_c1) * (2 * covariance + k_c2) /
+             ((m * m + n * n + k_c1) * (variance_a + variance_b + k_c2));
+    }
+  return sum / (double(x.width - 2 * k_radius) * double(x.height - 2 * k_radius));
+}
+
+}  // namespace ds
