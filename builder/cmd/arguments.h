@@ -18,6 +18,9 @@ struct Arguments {
   std::vector<std::string> overrides;
   std::string output_folder, store_folder, device;
   std::uint64_t rerender = 0, seed = 0;
+  std::string report_file, against;
+  int most_spp = 0, seeds = 4;
+  bool no_choices = false;
   bool json = false, dry_run = false, keep_going = false, force = false, explain = false;
 
   DatasetRequest request() const { return {target, overrides, output_folder, store_folder}; }
@@ -38,6 +41,9 @@ enum class Option {
   explain,
   rerender,
   seed,
+  report_file,
+  against,
+  report_size,  ///< how much is measured
 };
 
 /// A verb of the command. `run` returns the exit code: 0 where all is well, 1 where something

@@ -68,6 +68,25 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
       verb.add_option("--rerender", to.rerender, "trace N images again and compare their bytes")
           ->type_name("N");
       return;
+    case Option::report_file:
+      verb.add_option("-o,--output", to.report_file,
+                      "the report [NAME-accuracy.html]; its numbers go beside it, ending in .csv")
+          ->type_name("FILE");
+      return;
+    case Option::against:
+      verb.add_option("--against", to.against, "plot against minutes or spp only [both]")
+          ->check(CLI::IsMember({"minutes", "spp"}));
+      return;
+    case Option::report_size:
+      verb.add_option("--spp", to.most_spp,
+                      "most samples a pixel to measure [the recipe's, at least 16]")
+          ->check(CLI::Range(4, 1 << 20))
+          ->type_name("N");
+      verb.add_option("--seeds", to.seeds, "pictures for each error bar [4]")
+          ->check(CLI::Range(2, 64))
+          ->type_name("N");
+      verb.add_flag("--no-choices", to.no_choices, "leave out what settings and effects cost");
+      return;
     case Option::seed:
       verb.add_option("--seed", to.seed, "chooses the images of --rerender [0]")->type_name("N");
       return;

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <tuple>
 
 namespace ds {
@@ -35,9 +36,13 @@ class RealSceneTracer : public SceneTracer {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
         .count();
   }
+  double busy() const override {
+    return is_cpu_ ? static_cast<double>(std::clock()) / CLOCKS_PER_SEC : now();
+  }
 
  private:
   Tracer tracer_;
+  bool is_cpu_ = tracer_.runs_on_cpu();
 };
 
 /// Most rays of a supersampled mask: its tables then take about 300 MB.

@@ -29,8 +29,11 @@ class SceneTracer {
                      const std::atomic<bool>& stop) = 0;
   virtual Geometry trace_geometry(const Camera& camera, int width, int height) = 0;
   virtual std::string device() const = 0;
-  /// Seconds that are charged to what was traced between two calls: the wall clock's.
+  /// Seconds of the wall clock.
   virtual double now() const = 0;
+  /// Seconds the device was busy, for ratios: of this process' processors where they are the
+  /// device, since others' load hardly moves that; of the wall clock elsewhere.
+  virtual double busy() const = 0;
 };
 std::unique_ptr<SceneTracer> make_scene_tracer(const TracerOptions& options);
 
@@ -67,10 +70,12 @@ struct GeometryRung {
 /// What a choice costs beside the subject as the recipe has it.
 struct ChoiceCost {
   Choice choice;
-  Interval time;                ///< its tracing over the recipe's, median and range over the seeds
+  Interval time;  ///< SceneTracer::busy of its tracing over the recipe's, median and range over
+                  ///< the seeds
   std::optional<double> noise;  ///< its own noise (Film::relative_error) over the recipe's
-  double bias = 0;  ///< relative RMS difference it makes to a picture without noise; 0 where the
-                    ///< difference is lost in the noise
+  /// Relative RMS difference it makes to a picture without noise, with 95 % bounds; nothing where
+  /// the difference is lost in the noise.
+  std::optional<Interval> bias;
 };
 
 /// Where an error is reached.

@@ -13,6 +13,8 @@ namespace {
 /// Numbers of the pictures' seeds.
 constexpr int k_first_seed = 2'000'000;
 constexpr int k_seeds = 2;
+/// Standard errors of a 95 % bound.
+constexpr double k_bound = 1.96;
 
 /// One way of tracing the subject, with two seeds.
 struct Variant {
@@ -46,9 +48,9 @@ class Choosing {
     return tracer_.trace(subject.camera, engine, stop_);
   }
   Film timed(const Subject& subject, int number, std::vector<double>& seconds) const {
-    const double start = tracer_.now();
+    const double start = tracer_.busy();
     Film film = picture(subject, spp_, number);
-    seconds.push_back(tracer_.now() - start);
+    seconds.push_back(tracer_.busy() - start);
     return film;
   }
 
@@ -73,8 +75,10 @@ ChoiceCost cost_of(const Choice& choice, const Variant& variant, const Variant& 
   cost.time = time_ratio(variant, base);
   if (variant.noise() && base.noise() && *base.noise() > 0)
     cost.noise = *variant.noise() / *base.noise();
-  const double square = relative_bias_square(variant.a, variant.b, {truth.a, truth.b});
-  cost.bias = square > 0 ? std::sqrt(square) : 0;
+  const BiasSquare square = relative_bias_square(variant.a, variant.b, {truth.a, truth.b});
+  const double low = square.value - k_bound * square.standard_error;
+  const double high = square.value + k_bound * square.standard_error;
+  if (low > 0) cost.bias = {std::sqrt(square.value), std::sqrt(low), std::sqrt(high)};
   return cost;
 }
 

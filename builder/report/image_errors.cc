@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/report/image_errors.h"
 
+#include "builder/report/fit.h"
 #include "tracer/base/error.h"
 
 #include <algorithm>
@@ -96,16 +97,17 @@ std::optional<double> psnr_db(double mean_square) {
   return 10 * std::log10(255.0 * 255.0 / mean_square);
 }
 
-double relative_bias_square(const Film& x1, const Film& x2, const Reference& reference) {
+BiasSquare relative_bias_square(const Film& x1, const Film& x2, const Reference& reference) {
   check_sizes(x1, reference);
   check_sizes(x2, reference);
   const double mean = mean_luminance(reference);
-  if (mean <= 0) return 0;
-  double sum = 0;
-  for (std::size_t i = 0; i < pixel_count(x1); ++i)
-    sum += (luminance(x1, i) - luminance(reference.a, i)) *
-           (luminance(x2, i) - luminance(reference.b, i));
-  return sum / (static_cast<double>(pixel_count(x1)) * mean * mean);
+  if (mean <= 0) return {};
+  std::vector<double> products(pixel_count(x1));
+  for (std::size_t i = 0; i < products.size(); ++i)
+    products[i] = (luminance(x1, i) - luminance(reference.a, i)) *
+                  (luminance(x2, i) - luminance(reference.b, i)) / (mean * mean);
+  return {mean_of(products),
+          deviation_of(products) / std::sqrt(static_cast<double>(products.size()))};
 }
 
 }  // namespace ds

@@ -42,11 +42,14 @@ double picture_mean_square(const Picture& picture, const Picture& a, const Pictu
 /// the pictures cannot be told apart.
 std::optional<double> psnr_db(double mean_square);
 
-/// Errors that a camera's choice makes to the bias: the mean of (x1 - a)(x2 - b) over pixels, over
-/// the square of the mean luminance. x1 and x2 are traced with different seeds too, so that neither
-/// film's noise counts: what is left is the square of the relative difference between the pictures
-/// both would become with samples without end.
-double relative_bias_square(const Film& x1, const Film& x2, const Reference& reference);
+/// The mean of (x1 - a)(x2 - b) over pixels, over the square of the mean luminance. x1 and x2 are
+/// traced with different seeds too, so that neither film's noise counts: what is left is the square
+/// of the relative RMS difference between the pictures both would become with samples without end.
+struct BiasSquare {
+  double value = 0;           ///< negative by chance where the difference is lost in the noise
+  double standard_error = 0;  ///< of `value`, from the scatter of the pixels
+};
+BiasSquare relative_bias_square(const Film& x1, const Film& x2, const Reference& reference);
 
 /// Mean luminance (Rec.709) of a film.
 double mean_luminance(const Film& film);

@@ -55,11 +55,12 @@ TEST(LinearErrors, OfABlackReferenceAreNone) {
 }
 
 TEST(LinearErrors, BiasIsSeenThroughNoise) {
-  const double square =
+  const BiasSquare square =
       relative_bias_square(noisy_film(500, 1.02f, 0.1f, 1), noisy_film(500, 1.02f, 0.1f, 2),
                            {noisy_film(500, 1, 0.1f, 3), noisy_film(500, 1, 0.1f, 4)});
   // Products of two differences of deviation 0.14 each, over 250,000 pixels.
-  EXPECT_NEAR(square, 0.0004, 5 * 0.02 / 500);
+  EXPECT_NEAR(square.value, 0.0004, 5 * 0.02 / 500);
+  EXPECT_NEAR(square.standard_error, 0.02 / 500, 0.02 * 0.02 / 500);
 }
 
 TEST(PictureErrors, AreThoseOfScikitImage) {

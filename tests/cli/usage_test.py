@@ -4,7 +4,7 @@ import os
 
 from harness import IMAGES, TinyCase, main
 
-VERBS = ["build", "plan", "status", "explain", "verify", "models", "log", "devices"]
+VERBS = ["build", "plan", "status", "explain", "verify", "accuracy", "models", "log", "devices"]
 
 
 class UsageTest(TinyCase):
@@ -25,7 +25,9 @@ class UsageTest(TinyCase):
                           ["-C", self.folder / "absent", "build", self.recipe],
                           ["build", self.recipe, "--set", "engine.spp=0"],
                           ["build", self.recipe, "--set", "engine.ssp=4"],
-                          ["verify", self.recipe, "--rerender", "some"]):
+                          ["verify", self.recipe, "--rerender", "some"],
+                          ["accuracy", self.recipe, "--against", "hours"], ["accuracy", self.recipe, "--spp", "1"],
+                          ["accuracy", self.recipe, "-o", "report.csv"]):
             run = self.run_it(*arguments)
             self.assertEqual(run.code, 2, (arguments, str(run)))
             self.assertTrue(run.err.startswith("dsbuild: error: "), run)

@@ -83,6 +83,8 @@ class Tracer {
              const std::atomic<bool>* stop = nullptr);
   Geometry trace_geometry(const Camera& camera, int width, int height);
   std::string device_name() const;
+  /// Whether the device is this machine's processors: their time is then this process' own.
+  bool runs_on_cpu() const;
 
  private:
   struct State;

@@ -122,6 +122,10 @@ std::string Tracer::device_name() const {
   return state_->device.info().name;
 }
 
+bool Tracer::runs_on_cpu() const {
+  return state_->device.info().is_cpu;
+}
+
 void Tracer::set_scene(const Scene& scene) {
   state_->scene.reset();
   state_->packed_for.reset();

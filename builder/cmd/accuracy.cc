@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/report/accuracy.h"
+
+#include "builder/cmd/plan_text.h"
+#include "builder/cmd/stop_signal.h"
+#include "builder/cmd/verbs.h"
+#include "builder/report/csv.h"
+#include "builder/report/page.h"
+#include "tracer/base/files.h"
+
+#include <cstdio>
+#include <filesystem>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+Against against_of(const std::string& name) {
+  if (name == "spp") return Against::spp;
+  return name == "minutes" ? Against::minutes : Against::both;
+}
+
+nlohmann::json to_json(const Interval& interval) {
+  return {{"value", interval.value}, {"low", interval.low}, {"high", interval.high}};
+}
+
+nlohmann::json to_json(const PairAccuracy& pair) {
+  nlohmann::json object{{"environment", pair.environment},
+                        {"material", pair.material},
+                        {"image", pair.image},
+                        {"images", pair.images}};
+  if (pair.law) object["slope"] = to_json(pair.law->line.slope_interval());
+  object["targets"] = nlohmann::json::array();
+  for (const Target& target : pair.targets)
+    object["targets"].push_back({{"error", target.error},
+                                 {"spp", to_json(target.spp)},
+                                 {"seconds", to_json(target.seconds)},
+                                 {"extrapolated", target.extrapolated}});
+  return object;
+}
+
+void print(const Accuracy& accuracy, const fs::path& report, const fs::path& csv,
+           const Arguments& arguments) {
+  if (!arguments.json) {
+    fmt::print("report: {}\nnumbers: {}\n", report.string(), csv.string());
+    return;
+  }
+  nlohmann::json pairs = nlohmann::json::array();
+  for (const PairAccuracy& pair : accuracy.pairs)
+    pairs.push_back(to_json(pair));
+  print_json({{"report", report.string()},
+              {"csv", csv.string()},
+              {"device", accuracy.device},
+              {"most_spp", accuracy.options.most_spp},
+              {"pairs", pairs}});
+}
+
+}  // namespace
+
+int run_accuracy(const Arguments& arguments) {
+  const std::atomic<bool>& stop = stop_on_signal();
+  RealDisk disk;
+  Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
+  const fs::path report = arguments.report_file.empty()
+                              ? fs::path(dataset.recipe.name + "-accuracy.html")
+                              : fs::path(arguments.report_file);
+  fs::path csv_file = report;
+  csv_file.replace_extension(".csv");
+  if (csv_file == report)
+    fail(ErrorKind::usage, "-o {}: wanted the name of a page, found that of its numbers",
+         report.string());
+  Inputs inputs(*dataset.database);
+  TracerOptions options;
+  options.device = arguments.device;
+  const auto tracer = make_scene_tracer(options);
+  const auto told = [](const std::string& what) { fmt::print(stderr, "{}\n", what); };
+  const Accuracy accuracy =
+      measure_accuracy(dataset.recipe, inputs, *tracer,
+                       {arguments.most_spp, arguments.seeds, 8, !arguments.no_choices}, told, stop);
+  const std::string csv = accuracy_csv(accuracy);
+  disk.write(csv_file, bytes_of(csv));
+  disk.write(report, bytes_of(accuracy_page(accuracy, against_of(arguments.against), csv,
+                                            csv_file.filename().string())));
+  print(accuracy, report, csv_file, arguments);
+  return 0;
+}
+
+}  // namespace ds

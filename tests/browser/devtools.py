@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A headless chromium and the DevTools protocol over a pipe: JSON texts that end in a zero byte, fd 3 in, fd 4 out."""
+import json
+import os
+import select
+import shutil
+import subprocess
+import tempfile
+import time
+
+TIMEOUT_S = 120
+
+
+def find_browser():
+    """Path of a chromium, or None."""
+    return next((path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if path), None)
+
+
+class Browser:
+    """One page in one browser; `events` keeps whatever the page reported."""
+
+    def __init__(self, executable):
+        self.events = []
+        self._profile = tempfile.TemporaryDirectory(prefix="dsbuild-browser-")
+        to_browser, self._out = os.pipe()
+        self._in, from_browser = os.pipe()
+
+        def take_pipes():
+            # Copies first: either may already be 3 or 4.
+            first, second = os.dup(to_browser), os.dup(from_browser)
+            while min(first, second) < 5:
+                first, second = os.dup(first), os.dup(second)
+            os.dup2(first, 3)
+            os.dup2(second, 4)
+
+        self._process = subprocess.Popen(
+            [executable, "--headless", "--no-sandbox", "--disable-gpu", "--disable-extensions",
+             "--disable-background-networking", "--no-first-run", "--remote-debugging-pipe",
+             f"--user-data-dir={self._profile.name}", "about:blank"],
+            preexec_fn=take_pipes, close_fds=False, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL, env=dict(os.environ, HOME=self._profile.name))
+        os.close(to_browser)
+        os.close(from_browser)
+        self._buffer = b""
+        self._number = 0
+        self._session = None
+        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        self._session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            self.call(domain + ".enable")
+
+    def close(self):
+        os.close(self._out)
+        self._process.terminate()
+        self._process.wait(30)
+        os.close(self._in)
+        self._profile.cleanup()
+
+    def _read(self, deadline):
+        while b"\0" not in self._buffer:
+            ready, _, _ = select.select([self._in], [], [], max(0, deadline - time.monotonic()))
+            data = os.read(self._in, 1 << 20) if ready else b""
+            if not data:
+                raise TimeoutError("the browser said nothing" if not ready else "the browser is gone")
+            self._buffer += data
+        text, self._buffer = self._buffer.split(b"\0", 1)
+        message = json.loads(text)
+        if "method" in message:
+            self.events.append(message)
+        return message
+
+    def call(self, method, **parameters):
+        self._number += 1
+        message = {"id": self._number, "method": method, "params": parameters}
+        if self._session:
+            message["sessionId"] = self._session
+        data = json.dumps(message).encode() + b"\0"
+        while data:
+            data = data[os.write(self._out, data):]
+        deadline = time.monotonic() + TIMEOUT_S
+        while True:
+            answer = self._read(deadline)
+            if answer.get("id") == self._number:
+                if "error" in answer:
+                    raise RuntimeError(f"{method}: {answer['error']}")
+                return answer["result"]
+
+    def open(self, url):
+        self.call("Page.navigate", url=url)
+        deadline = time.monotonic() + TIMEOUT_S
+        while not any(event["method"] == "Page.loadEventFired" for event in self.events):
+            self._read(deadline)
+
+    def value(self, expression):
+        """Of a JavaScript expression, as JSON."""
+        answer = self.call("Runtime.evaluate", expression=expression, returnByValue=True)
+        if "exceptionDetails" in answer:
+            raise RuntimeError(answer["exceptionDetails"])
+        return answer["result"].get("value")
+
+    def seen(self, *methods):
+        return [event["params"] for event in self.events if event["method"] in methods]
