@@ -41,7 +41,8 @@ static_assert(sizeof(SceneData) == 5 * 4 && sizeof(ViewData) == 32 * 4, "no padd
 enum {
   k_filter_size = 256,  ///< intervals of the inverse cumulative filter
   k_bvh_width = 8,
-  k_bvh_stack = 192,  ///< the builder refuses a tree that could need more
+  k_bvh_depth = 32,  ///< levels of nodes; the builder refuses a deeper tree
+  k_bvh_stack = (k_bvh_width - 1) * k_bvh_depth + 1,
 
   // A node of the tree: eight vectors of eight floats. Bounds of child i stand in element i of
   // x_low, x_high, ...; vector 6 holds the references: a node's index, or a leaf's with the top bit
