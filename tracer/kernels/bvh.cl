@@ -6,19 +6,17 @@
 // depends on ray and triangle alone, and no box is skipped that could hold it. The errors that must
 // be covered for that, in units of half an ulp of the lengths named:
 //   - boxes are compared as fma(plane, 1/d, -o/d): 1 |o| for the product, 2 of the box's distance
-//     for 1/d and its use;
+//     for 1/d and its use, 1 of it for the comparison of two rounded distances;
 //   - the triangle test misplaces a corner by 4 of its distance from the origin, which is at most
 //     the hit's distance and the triangle's own extent.
 // The extent's part is added to the boxes when the tree is built (k_box_error). For the rest both
-// ends of every slab are moved outwards by k_slab_error (|o| + distance) / |d|, where nothing is
-// hit beyond `distance`: constants of the ray, so they cost nothing a node. Rounding of the
-// comparison itself is relative and covered by k_far_scale.
+// ends of every slab are moved outwards by k_slab_error ((|o| + distance) / |d| + distance), where
+// nothing is hit beyond `distance`: constants of the ray, so they cost nothing a node.
 #pragma once
 
 #include "tracer/kernels/types.h"
 
 #define k_slab_error 4.76837158203125e-7f /* 8 half-ulps */
-#define k_far_scale 1.0000005f
 /// A hit nearer than 4 half-ulps of the triangle's farthest corner is within its test's error: a
 /// ray that starts on a small triangle would else meet a large one in the same plane, from behind.
 #define k_least_t 2.4e-7f
@@ -106,7 +104,7 @@ DS_FN SlabRay slab_ray(const __global float8* nodes, const Ray* ray) {
   for (int axis = 0; axis < 3; ++axis) {
     const float offset = -ray->origin[axis] * s.inverse[axis];
     const float margin = k_slab_error * (fabs(ray->origin[axis]) + distance);
-    const float widen = margin * fabs(s.inverse[axis]);
+    const float widen = fma(margin, fabs(s.inverse[axis]), k_slab_error * distance);
     s.near_offset[axis] = offset - widen;
     s.far_offset[axis] = offset + widen;
   }
@@ -128,8 +126,7 @@ DS_FN float8 test_boxes(const __global float8* node, const SlabRay* s, float t_m
   const float8 far_z = fma(DS_PLANE(far, 2), (float8)(s->inverse[2]), (float8)(s->far_offset[2]));
 #undef DS_PLANE
   const float8 entry = greater8(greater8(near_x, near_y), greater8(near_z, (float8)(0.0f)));
-  const float8 leave =
-      lesser8(lesser8(far_x, far_y), lesser8(far_z, (float8)(t_max))) * k_far_scale;
+  const float8 leave = lesser8(lesser8(far_x, far_y), lesser8(far_z, (float8)(t_max)));
   *open = lanes_set(entry <= leave);
   return entry;
 }
@@ -160,50 +157,53 @@ DS_FN ShearRay shear_ray(const Ray* ray, const float* inverse) {
 /// one sign, so it is right to a few ulps even for slivers.
 typedef struct {
   float8 t, weight1, weight2, inverse_sum;
-  LaneSet hits;
-} LeafHits;
+  int8 met;  ///< in (0, t_max]
+} LeafTest;
 
-DS_FN LeafHits test_leaf(const __global float8* leaf, const Ray* ray, const ShearRay* s,
-                         float t_max) {
-  const float8 ox = (float8)(ray->origin[s->x]);
-  const float8 oy = (float8)(ray->origin[s->y]);
-  const float8 oz = (float8)(ray->origin[s->z]);
-  const float8 shear_x = (float8)(-s->shear_x);
-  const float8 shear_y = (float8)(-s->shear_y);
-  const __global float8* xs = leaf + s->x;
-  const __global float8* ys = leaf + s->y;
-  const __global float8* zs = leaf + s->z;
+DS_FN LeafTest test_leaf(const __global float8* leaf, ulong x, ulong y, ulong z, float8 ox,
+                         float8 oy, float8 oz, float8 minus_shear_x, float8 minus_shear_y,
+                         float shear_z, float t_max) {
+  const __global float8* xs = leaf + x;
+  const __global float8* ys = leaf + y;
+  const __global float8* zs = leaf + z;
   const float8 az = zs[0] - oz;
   const float8 bz = zs[3] - oz;
   const float8 cz = zs[6] - oz;
-  const float8 ax = fma(shear_x, az, xs[0] - ox);
-  const float8 ay = fma(shear_y, az, ys[0] - oy);
-  const float8 bx = fma(shear_x, bz, xs[3] - ox);
-  const float8 by = fma(shear_y, bz, ys[3] - oy);
-  const float8 cx = fma(shear_x, cz, xs[6] - ox);
-  const float8 cy = fma(shear_y, cz, ys[6] - oy);
+  const float8 ax = fma(minus_shear_x, az, xs[0] - ox);
+  const float8 ay = fma(minus_shear_y, az, ys[0] - oy);
+  const float8 bx = fma(minus_shear_x, bz, xs[3] - ox);
+  const float8 by = fma(minus_shear_y, bz, ys[3] - oy);
+  const float8 cx = fma(minus_shear_x, cz, xs[6] - ox);
+  const float8 cy = fma(minus_shear_y, cz, ys[6] - oy);
   const float8 u = cx * by - cy * bx;
   const float8 v = ax * cy - ay * cx;
   const float8 w = bx * ay - by * ax;
   const float8 sum = u + v + w;
-  LeafHits hits;
-  hits.inverse_sum = 1.0f / sum;
-  hits.t = fma(u, az, fma(v, bz, w * cz)) * s->shear_z * hits.inverse_sum;
-  hits.weight1 = v;
-  hits.weight2 = w;
+  LeafTest test;
+  test.inverse_sum = 1.0f / sum;
+  test.t = fma(u, az, fma(v, bz, w * cz)) * shear_z * test.inverse_sum;
+  test.weight1 = v;
+  test.weight2 = w;
   const int8 inside =
       ((u >= 0.0f) & (v >= 0.0f) & (w >= 0.0f)) | ((u <= 0.0f) & (v <= 0.0f) & (w <= 0.0f));
   const float8 farthest = greater8(fabs(az), greater8(fabs(bz), fabs(cz)));
-  const float8 least = farthest * (k_least_t * fabs(s->shear_z));
-  hits.hits = lanes_set(inside & (sum != 0.0f) & (hits.t > least) & (hits.t <= t_max));
-  return hits;
+  const float8 least = farthest * (k_least_t * fabs(shear_z));
+  test.met = inside & (sum != 0.0f) & (test.t > least) & (test.t <= t_max);
+  return test;
+}
+
+DS_FN LeafTest test_leaf(const __global float8* leaf, const Ray* ray, const ShearRay* s,
+                         float t_max) {
+  return test_leaf(leaf, (ulong)s->x, (ulong)s->y, (ulong)s->z, (float8)(ray->origin[s->x]),
+                   (float8)(ray->origin[s->y]), (float8)(ray->origin[s->z]), (float8)(-s->shear_x),
+                   (float8)(-s->shear_y), s->shear_z, t_max);
 }
 
 /// Takes the leaf's nearest triangle where it is nearer than `hit`, or as near and of a lesser id.
 DS_FN void nearest_in_leaf(const __global float8* leaf, const Ray* ray, const ShearRay* s,
                            Hit* hit) {
-  const LeafHits found = test_leaf(leaf, ray, s, hit->t);
-  LaneSet left = found.hits;
+  const LeafTest found = test_leaf(leaf, ray, s, hit->t);
+  LaneSet left = lanes_set(found.met);
   if (!left) return;
   float t[k_bvh_width], weight1[k_bvh_width], weight2[k_bvh_width], inverse_sum[k_bvh_width];
   vstore8(found.t, 0, t);
@@ -301,7 +301,7 @@ static Hit nearest_hit(const __global float8* nodes, const __global float8* leav
     do {
       if (size == 0) return hit;
       --size;
-    } while (stack.entry[size] > hit.t * k_far_scale);
+    } while (stack.entry[size] > hit.t);
     current = stack.node[size];
   }
 }
@@ -326,7 +326,9 @@ static bool any_hit(const __global float8* nodes, const __global float8* leaves,
         stack[size++] = child[first_lane(open)];
       }
     }
-    if (test_leaf(leaves + (current & ~k_leaf_bit) * k_leaf_vectors, &ray, &shear, ray.t_max).hits)
+    if (lanes_set(
+            test_leaf(leaves + (current & ~k_leaf_bit) * k_leaf_vectors, &ray, &shear, ray.t_max)
+                .met))
       return true;
   next:
     if (size == 0) return false;

@@ -3,7 +3,7 @@
 // roulette. One work-item owns DS_LANES pixels. A lane whose path has ended starts its pixel's next
 // sample at once, so lanes stay busy; a pixel's samples are added in order, so the picture does not
 // depend on how pixels are dealt out.
-#include "tracer/kernels/bvh.cl"
+#include "tracer/kernels/batch.cl"
 #include "tracer/kernels/camera.h"
 #include "tracer/kernels/shade.h"
 
@@ -21,6 +21,12 @@ typedef struct {
   natural diffuse, glossy, specular;  ///< bounces of each sort
   natural sample;                     ///< number of the sample in flight
   mask alive;
+  // The last vertex' light is known once its shadow ray is traced, together with the next ray of
+  // the path, or with the first of the next sample where the path ended.
+  LaneRays shadow;
+  real3 direct;   ///< what the shadow ray's light adds where nothing stands between
+  real3 closing;  ///< radiance so far of the sample before the one in flight
+  mask closes;    ///< that sample still waits for its shadow ray
 } Paths;
 
 typedef struct {
@@ -82,54 +88,18 @@ DS_FN void start_paths(Paths* paths, mask start, const Pixels* pixels, const Sce
   paths->alive = paths->alive | start;
 }
 
-/// Lane-by-lane copies of what tracing needs and finds; the only place where lanes are taken apart.
+/// The rows of the triangles that were hit, lane by lane; lanes are taken apart only here and in
+/// batch.cl.
 typedef struct {
-  float origin[3][DS_LANES] __attribute__((aligned(64)));
-  float direction[3][DS_LANES] __attribute__((aligned(64)));
-  float t_max[DS_LANES] __attribute__((aligned(64)));
-  int wanted[DS_LANES] __attribute__((aligned(64)));
-} LaneRays;
-
-DS_FN void store_rays(LaneRays* rays, real3 origin, real3 direction, real t_max, mask wanted) {
-  *(real*)rays->origin[0] = origin.x;
-  *(real*)rays->origin[1] = origin.y;
-  *(real*)rays->origin[2] = origin.z;
-  *(real*)rays->direction[0] = direction.x;
-  *(real*)rays->direction[1] = direction.y;
-  *(real*)rays->direction[2] = direction.z;
-  *(real*)rays->t_max = t_max;
-  *(mask*)rays->wanted = wanted;
-}
-
-DS_FN Ray lane_ray(const LaneRays* rays, int lane) {
-  Ray ray;
-  for (int axis = 0; axis < 3; ++axis) {
-    ray.origin[axis] = rays->origin[axis][lane];
-    ray.direction[axis] = rays->direction[axis][lane];
-  }
-  ray.t_max = rays->t_max[lane];
-  return ray;
-}
-
-/// A triangle's corners' values and the hit's place in it, lane by lane.
-enum { k_hit_weights = k_triangle_words, k_hit_words = k_triangle_words + 2 };
-typedef struct {
-  float word[k_hit_words][DS_LANES] __attribute__((aligned(64)));
-  int hit[DS_LANES] __attribute__((aligned(64)));
+  float word[k_triangle_words][DS_LANES] __attribute__((aligned(64)));
 } LaneHits;
 
-DS_FN void trace_lanes(const SceneTables* t, const LaneRays* rays, LaneHits* hits) {
+DS_FN void load_triangles(DS_GLOBAL float* triangles, const BatchHits* found, LaneHits* hits) {
   for (int lane = 0; lane < DS_LANES; ++lane) {
-    hits->hit[lane] = 0;
-    if (!rays->wanted[lane]) continue;
-    const Hit hit = nearest_hit(t->nodes, t->leaves, lane_ray(rays, lane));
-    if (hit.id == k_none) continue;
-    DS_GLOBAL float* triangle = t->triangles + hit.id * k_triangle_words;
+    const uint id = found->id[lane];
+    DS_GLOBAL float* triangle = triangles + (id == k_none ? 0u : id) * k_triangle_words;
     for (int i = 0; i < k_triangle_words; ++i)
       hits->word[i][lane] = triangle[i];
-    hits->word[k_hit_weights][lane] = hit.b1;
-    hits->word[k_hit_weights + 1][lane] = hit.b2;
-    hits->hit[lane] = -1;
   }
 }
 
@@ -140,13 +110,15 @@ DS_FN real3 hit_word3(const LaneHits* hits, int i) {
   return vec(hit_word(hits, i), hit_word(hits, i + 1), hit_word(hits, i + 2));
 }
 
-DS_FN Surface surface_of(const LaneHits* hits, real3 wo) {
-  const real b1 = hit_word(hits, k_hit_weights);
-  const real b2 = hit_word(hits, k_hit_weights + 1);
-  const real b0 = 1.0f - b1 - b2;
+DS_FN Surface surface_of(const LaneHits* hits, real3 origin, real3 direction) {
+  const real3 wo = negate(direction);
   const real3 p0 = hit_word3(hits, k_triangle_positions);
   const real3 p1 = hit_word3(hits, k_triangle_positions + 3);
   const real3 p2 = hit_word3(hits, k_triangle_positions + 6);
+  const real2 weights = hit_weights(origin, direction, p0, p1, p2);
+  const real b1 = weights.x;
+  const real b2 = weights.y;
+  const real b0 = 1.0f - b1 - b2;
   Surface s;
   const real3 e1 = sub(p1, p0);
   const real3 e2 = sub(p2, p0);
@@ -191,44 +163,27 @@ DS_FN real3 emitted(const SceneTables* t, const LaneHits* hits, const Surface* s
 }
 #endif
 
-/// What next-event estimation would add if nothing stood between, and the ray that tells.
-typedef struct {
-  real3 radiance;
-  mask wanted;
-} DirectLight;
-
 #ifdef DS_LIGHTS_SAMPLED
-DS_FN DirectLight direct_light(const Paths* paths, mask active, const Surface* s,
-                               const MaterialPoint* m, Frame frame, Viewer viewer, Sampler sampler,
-                               natural pair, real choice, const SceneData* scene,
-                               const SceneTables* t, LaneRays* rays) {
+/// Next-event estimation: asks for the shadow ray and keeps what it would let through.
+DS_FN void ask_for_light(Paths* paths, mask active, const Surface* s, const MaterialPoint* m,
+                         Frame frame, Viewer viewer, Sampler sampler, natural pair, real choice,
+                         const SceneData* scene, const SceneTables* t) {
   const LightSample light =
       sample_light(t->lights, scene->light_table, scene->light_count, active, s->position, choice,
                    sample_pair(sampler, pair + (uint)k_pair_light));
   const BsdfValue bsdf = evaluate_material(m, viewer, to_local(frame, light.wi));
   const real weight = choose(light.dirac, (real)(1.0f), power_heuristic(light.pdf, bsdf.pdf));
   const real3 arriving = scale(light.radiance, weight / greater(light.pdf, (real)(1e-30f)));
-  DirectLight d;
-  d.radiance = mul(mul(paths->throughput, bsdf.value), arriving);
-  d.wanted = active & (light.pdf > 0.0f) & (max_component(d.radiance) > 0.0f) &
-             (dot(light.wi, s->normal) > 0.0f);
-  const real3 origin = offset_origin(s->position, s->error, s->normal, light.wi);
-  const real3 way = sub(light.target, origin);
+  paths->direct = mul(mul(paths->throughput, bsdf.value), arriving);
+  LaneRays* shadow = &paths->shadow;
+  shadow->wanted = active & (light.pdf > 0.0f) & (max_component(paths->direct) > 0.0f) &
+                   (dot(light.wi, s->normal) > 0.0f);
+  shadow->origin = offset_origin(s->position, s->error, s->normal, light.wi);
+  const real3 way = sub(light.target, shadow->origin);
   const real distance = sqrt(greater(dot(way, way), (real)(1e-30f)));
   // Short of the light by 1e-4 of the way, so that an emitting surface does not shadow itself.
-  store_rays(rays, origin, choose(light.bounded, scale(way, 1.0f / distance), light.wi),
-             choose(light.bounded, distance * 0.9999f, (real)(1e30f)), d.wanted);
-  return d;
-}
-
-DS_FN void add_unshadowed(Paths* paths, DirectLight d, const SceneTables* t, const LaneRays* rays) {
-  int clear[DS_LANES] __attribute__((aligned(64)));
-  for (int lane = 0; lane < DS_LANES; ++lane) {
-    clear[lane] =
-        rays->wanted[lane] && !any_hit(t->nodes, t->leaves, lane_ray(rays, lane)) ? -1 : 0;
-  }
-  const mask lit = d.wanted & (*(mask*)clear != 0);
-  paths->radiance = add(paths->radiance, choose(lit, d.radiance, splat((real)(0.0f))));
+  shadow->direction = choose(light.bounded, scale(way, 1.0f / distance), light.wi);
+  shadow->t_max = choose(light.bounded, distance * 0.9999f, (real)(1e30f));
 }
 #endif
 
@@ -258,11 +213,7 @@ DS_FN mask scatter(Paths* paths, mask active, const Surface* s, const MaterialPo
   paths->diffuse += choose_natural(matte, (natural)(1u), (natural)(0u));
   paths->glossy += choose_natural(b.glossy & !b.specular, (natural)(1u), (natural)(0u));
   paths->specular += choose_natural(b.specular, (natural)(1u), (natural)(0u));
-  const mask too_deep = (paths->diffuse > view->depth_diffuse) |
-                        (paths->glossy > view->depth_glossy) |
-                        (paths->specular > view->depth_specular);
-  const mask ends =
-      !b.valid | leaks | (roulette >= survival) | (max_component(throughput) <= 0.0f) | too_deep;
+  const mask ends = !b.valid | leaks | (roulette >= survival) | (max_component(throughput) <= 0.0f);
   paths->throughput = choose(active, scale(throughput, 1.0f / survival), paths->throughput);
   paths->eta_scale = choose(active, eta_scale, paths->eta_scale);
   paths->pdf = choose(active, choose(b.specular, (real)(-1.0f), b.pdf), paths->pdf);
@@ -328,17 +279,47 @@ DS_FN void store_sums(const Sums* sums, __global float* film, const Pixels* pixe
   }
 }
 
-/// One step of all paths: to the next surface, its light, its scattering. Returns the lanes whose
-/// sample is complete.
-DS_FN mask advance(Paths* paths, const Pixels* pixels, const SceneData* scene, const ViewData* view,
-                   const SceneTables* t) {
-  LaneRays rays;
-  LaneHits hits;
-  store_rays(&rays, paths->origin, paths->direction, (real)(1e30f), paths->alive);
-  trace_lanes(t, &rays, &hits);
-  mask hit = paths->alive & (*(mask*)hits.hit != 0);
+/// True where a path may visit no further surface; what its last ray meets may still shine, which
+/// the last vertex' light sample has left a share for.
+DS_FN mask is_last(const Paths* paths, const ViewData* view) {
+  return (paths->vertices >= view->depth_total) | (paths->diffuse > view->depth_diffuse) |
+         (paths->glossy > view->depth_glossy) | (paths->specular > view->depth_specular);
+}
+
+/// Adds the light of shadow rays that met nothing, and the samples that waited for it.
+DS_FN void add_direct(Paths* paths, Sums* sums, const BatchHits* found) {
+  const mask lit = paths->shadow.wanted & (*(const mask*)found->any == 0);
+  const real3 light = choose(lit, paths->direct, splat((real)(0.0f)));
+  paths->radiance = choose(paths->closes, paths->radiance, add(paths->radiance, light));
+  if (any_lane(paths->closes))
+    add_samples(sums, paths->closes, paths->sample - 1u, add(paths->closing, light));
+  paths->closes = (mask)(0);
+  paths->shadow.wanted = (mask)(0);
+}
+
+/// How a step left the paths that it ended.
+typedef struct {
+  mask done;    ///< the sample is complete
+  mask closes;  ///< but for its last shadow ray
+} StepEnds;
+
+/// One step of all paths: to the next surface, its light, its scattering. First adds the light that
+/// was asked for before.
+DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const SceneData* scene,
+                       const ViewData* view, const SceneTables* t) {
+  StepEnds ends;
+  ends.closes = (mask)(0);
+  LaneRays next;
+  next.origin = paths->origin;
+  next.direction = paths->direction;
+  next.t_max = (real)(1e30f);
+  next.wanted = paths->alive;
+  BatchHits found;
+  trace_lanes(t->nodes, t->leaves, &next, &paths->shadow, &found);
+  add_direct(paths, sums, &found);
+  mask hit = paths->alive & (*(const natural*)found.id != k_none);
   const mask escapes = paths->alive & !hit;
-  mask done = escapes;
+  ends.done = escapes;
 #ifdef DS_ESCAPE_LIGHTS
   if (any_lane(escapes)) {
     const real3 sky = escape_radiance(t->lights, scene->first_escape_light, scene->light_count,
@@ -347,9 +328,11 @@ DS_FN mask advance(Paths* paths, const Pixels* pixels, const SceneData* scene, c
         choose(escapes, add(paths->radiance, mul(paths->throughput, sky)), paths->radiance);
   }
 #endif
-  if (!any_lane(hit)) return done;
+  if (!any_lane(hit)) return ends;
+  LaneHits hits;
+  load_triangles(t->triangles, &found, &hits);
+  const Surface s = surface_of(&hits, paths->origin, paths->direction);
   const real3 wo = negate(paths->direction);
-  const Surface s = surface_of(&hits, wo);
 #ifdef DS_CAMERA_INVISIBLE
   const natural flags = bits_of(hit_word(&hits, k_triangle_flags));
   const mask passes =
@@ -357,17 +340,17 @@ DS_FN mask advance(Paths* paths, const Pixels* pixels, const SceneData* scene, c
   const real3 behind = offset_origin(s.position, s.error, s.normal, paths->direction);
   paths->origin = choose(passes, behind, paths->origin);
   hit = hit & !passes;
-  if (!any_lane(hit)) return done;
+  if (!any_lane(hit)) return ends;
 #endif
 #ifdef DS_MESH_LIGHTS
   paths->radiance =
       add(paths->radiance,
           mul(paths->throughput, emitted(t, &hits, &s, paths->origin, wo, hit, paths->pdf)));
 #endif
-  const mask last = hit & (paths->vertices >= view->depth_total);
-  done = done | last;
+  const mask last = hit & is_last(paths, view);
+  ends.done = ends.done | last;
   const mask active = hit & !last;
-  if (!any_lane(active)) return done;
+  if (!any_lane(active)) return ends;
   const Sampler sampler =
       sampler_for(view->seed_low, view->seed_high, pixels->index, paths->sample);
   const natural pair = paths->vertices * (uint)k_pairs_vertex + (uint)k_pairs_camera;
@@ -391,12 +374,11 @@ DS_FN mask advance(Paths* paths, const Pixels* pixels, const SceneData* scene, c
   viewer.wo.z = greater(viewer.wo.z, (real)(1e-3f));
   viewer.outside = s.outside;
 #ifdef DS_LIGHTS_SAMPLED
-  const DirectLight direct =
-      direct_light(paths, active, &s, &m, frame, viewer, sampler, pair, choices.x, scene, t, &rays);
-  if (any_lane(direct.wanted)) add_unshadowed(paths, direct, t, &rays);
+  ask_for_light(paths, active, &s, &m, frame, viewer, sampler, pair, choices.x, scene, t);
 #endif
-  return done |
-         scatter(paths, active, &s, &m, frame, viewer, sampler, pair, lobe_choice, choices.y, view);
+  ends.closes =
+      scatter(paths, active, &s, &m, frame, viewer, sampler, pair, lobe_choice, choices.y, view);
+  return ends;
 }
 
 __kernel void trace_paths(
@@ -423,16 +405,22 @@ __kernel void trace_paths(
   Sums sums;
   load_sums(&sums, film, &pixels, plane);
   Paths paths;
-  paths.alive = (mask)(0);
+  paths.alive = paths.closes = paths.shadow.wanted = (mask)(0);
+  paths.shadow.origin = paths.shadow.direction = splat((real)(0.0f));
+  paths.shadow.t_max = (real)(0.0f);
+  paths.direct = paths.closing = splat((real)(0.0f));
   paths.sample = (natural)(view.sample_begin);
   start_paths(&paths, pixels.inside & (paths.sample < view.sample_end), &pixels, &scene, &view, &t);
-  while (any_lane(paths.alive)) {
-    const mask done = advance(&paths, &pixels, &scene, &view, &t);
-    if (!any_lane(done)) continue;
-    add_samples(&sums, done, paths.sample, paths.radiance);
-    paths.alive = paths.alive & !done;
-    paths.sample += choose_natural(done, (natural)(1u), (natural)(0u));
-    const mask start = done & (paths.sample < view.sample_end);
+  while (any_lane(paths.alive | paths.closes)) {
+    const StepEnds ends = advance(&paths, &sums, &pixels, &scene, &view, &t);
+    const mask over = ends.done | ends.closes;
+    if (!any_lane(over)) continue;
+    if (any_lane(ends.done)) add_samples(&sums, ends.done, paths.sample, paths.radiance);
+    paths.closing = choose(ends.closes, paths.radiance, paths.closing);
+    paths.closes = ends.closes;
+    paths.alive = paths.alive & !over;
+    paths.sample += choose_natural(over, (natural)(1u), (natural)(0u));
+    const mask start = over & (paths.sample < view.sample_end);
     if (any_lane(start)) start_paths(&paths, start, &pixels, &scene, &view, &t);
   }
   store_sums(&sums, film, &pixels, plane);
