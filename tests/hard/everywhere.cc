@@ -20,10 +20,11 @@ std::string Way::name() const {
 
 std::vector<Way> ways() {
   std::vector<Way> all;
-  for (const MathMode math : {MathMode::strict, MathMode::fast})
-    for (const int lanes : {8, 1})
-      for (const bool full : {false, true})
-        all.push_back({math, lanes, full});
+  for (const int lanes : {8, 1})
+    for (const bool full : {false, true})
+      all.push_back({MathMode::strict, lanes, full});
+  all.push_back({MathMode::fast, 8, false});
+  all.push_back({MathMode::fast, 1, true});
   return all;
 }
 

@@ -18,7 +18,8 @@ struct Way {
   std::string name() const;
 };
 
-/// All eight.
+/// All four strict ones, whose bits are compared, and two fast ones: every pair of choices is among
+/// them.
 std::vector<Way> ways();
 
 /// Traces on a tracer that the process keeps for each way.

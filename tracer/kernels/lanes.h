@@ -24,7 +24,12 @@ typedef int integer;
 typedef uint natural;
 typedef int mask;
 #  else
+#    ifdef DS_REAL_DOUBLE
+// Only the precision audit's build (tests/precision): tables and constants stay floats.
+using real = double;
+#    else
 using real = float;
+#    endif
 using integer = int;
 using natural = uint;
 using mask = bool;
@@ -46,7 +51,7 @@ DS_FN natural to_natural_bits(integer x) {
   return (natural)x;
 }
 DS_FN natural bits_of(real x) {
-  return as_uint(x);
+  return as_uint((float)x);
 }
 DS_FN real real_of(natural x) {
   return as_float(x);
@@ -165,6 +170,19 @@ DS_FN real greater(real a, real b) {
 DS_FN real clamp01(real a) {
   return lesser(greater(a, (real)(0.0f)), (real)(1.0f));
 }
+/// A whole number of any size as an integer, held in [-2^30, 2^30]; NaN is -2^30. to_integer of
+/// what an int cannot hold differs from device to device.
+DS_FN integer to_held_integer(real whole) {
+  return to_integer(lesser(greater(whole, (real)(-1073741824.0f)), (real)(1073741824.0f)));
+}
+#ifdef DS_REAL_DOUBLE
+DS_FN real absolute(real a) {
+  return fabs(a);
+}
+DS_FN real with_sign_of(real magnitude, real sign) {
+  return copysign(magnitude, sign);
+}
+#else
 DS_FN real absolute(real a) {
   return real_of(bits_of(a) & 0x7fffffffu);
 }
@@ -172,6 +190,7 @@ DS_FN real absolute(real a) {
 DS_FN real with_sign_of(real magnitude, real sign) {
   return real_of((bits_of(magnitude) & 0x7fffffffu) | (bits_of(sign) & 0x80000000u));
 }
+#endif
 DS_FN real square(real a) {
   return a * a;
 }

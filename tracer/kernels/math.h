@@ -48,9 +48,11 @@ DS_FN SinCos sin_cos_turns(real u) {
   return result;
 }
 
-/// sin x. Domain |x| <= 1e4; absolute error below 1e-6 (|x| + 1).
+/// sin x. Domain |x| <= 1e4; absolute error below 1e-6 (|x| + 1). Beyond 2^26 turns, where a
+/// float's neighbour is 8 turns away, the same for all x.
 DS_FN real sine(real x) {
-  return sin_cos_turns(x * DS_INV_TWO_PI).sin;
+  const real turns = x * DS_INV_TWO_PI;
+  return sin_cos_turns(lesser(greater(turns, (real)(-67108864.0f)), (real)(67108864.0f))).sin;
 }
 
 /// e^x. Results are held in [2^-127, 2^127]; relative error below 3e-7 for |x| <= 80.
@@ -121,6 +123,19 @@ DS_FN real arctangent_turns(real y, real x) {
 /// arccos z in turns, [0, 0.5], for z in [-1, 1] (held there).
 DS_FN real arccosine_turns(real z) {
   return arctangent_turns(safe_sqrt((1.0f - z) * (1.0f + z)), z);
+}
+
+/// Adds x to *sum + *rest, a sum of two floats that is never added up: *rest is below half an ulp
+/// of *sum (Neumaier 1974, and Dekker's renormalisation 1971, without which the small parts that
+/// rounding cuts off pile up in a float of their own and are cut off in turn: 6e-5 after a million
+/// equal samples). Exact to 2^-46 for each addition.
+DS_FN void add_compensated(real* sum, real* rest, real x) {
+  const real total = *sum + x;
+  const mask sum_is_greater = absolute(*sum) >= absolute(x);
+  const real lost = choose(sum_is_greater, (*sum - total) + x, (x - total) + *sum);
+  const real low = *rest + lost;
+  *sum = total + low;
+  *rest = low - (*sum - total);
 }
 
 DS_FN real power5(real x) {

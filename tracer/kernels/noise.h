@@ -14,9 +14,9 @@ DS_FN real noise_corner(natural x, natural y, natural z, real dx, real dy, real 
   return choose((h & 1u) != 0u, -a, a) + choose((h & 2u) != 0u, -b, b);
 }
 
-/// The lattice's number of a whole coordinate, modulo 2^32.
+/// The lattice's number of a whole coordinate.
 DS_FN natural lattice(real whole) {
-  return to_natural_bits(to_integer(whole));
+  return to_natural_bits(to_held_integer(whole));
 }
 
 DS_FN real noise_fade(real t) {
@@ -26,8 +26,8 @@ DS_FN real noise_between(real a, real b, real t) {
   return fma(t, b - a, a);
 }
 
-/// In [-1, 1], 0 at lattice points, mean 0. Domain: |coordinate| < 2^30; beyond it the lattice
-/// wraps.
+/// In [-1, 1], 0 at lattice points, mean 0. Domain: |coordinate| <= 2^30; beyond it all cells are
+/// one.
 DS_FN real gradient_noise(real3 p) {
   const real3 cell = vec(floor(p.x), floor(p.y), floor(p.z));
   const real3 d = sub(p, cell);

@@ -238,21 +238,14 @@ DS_FN void load_sums(Sums* sums, const __global float* film, const Pixels* pixel
   sums->halves = load(film + k_film_halves * plane, pixels->index);
 }
 
-/// Adds the finished samples in `done`, by number. Neumaier 1974: what the sum's rounding cuts off
-/// is summed beside it.
+/// Adds the finished samples in `done`, by number.
 DS_FN void add_samples(Sums* sums, mask done, natural number, real3 radiance) {
   const real sample[3] = {radiance.x, radiance.y, radiance.z};
   mask good = done;
   for (int c = 0; c < 3; ++c)
     good = good & (sample[c] >= 0.0f) & (sample[c] <= 1e30f);
   for (int c = 0; c < 3; ++c) {
-    const real x = choose(good, sample[c], (real)(0.0f));
-    const real total = sums->sum[c] + x;
-    const mask sum_is_greater = absolute(sums->sum[c]) >= absolute(x);
-    const real lost =
-        choose(sum_is_greater, (sums->sum[c] - total) + x, (x - total) + sums->sum[c]);
-    sums->compensation[c] = sums->compensation[c] + lost;
-    sums->sum[c] = total;
+    add_compensated(&sums->sum[c], &sums->compensation[c], choose(good, sample[c], (real)(0.0f)));
   }
   sums->rejected = sums->rejected + choose(done & !good, (real)(1.0f), (real)(0.0f));
   const real signed_luminance =

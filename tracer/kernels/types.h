@@ -84,7 +84,7 @@ enum {
 /// One pixel's running sums in film: planes of `width * height` floats, in this order.
 enum {
   k_film_sum = 0,           ///< 3: r, g, b
-  k_film_compensation = 3,  ///< 3: what rounding has cut off (Neumaier 1974)
+  k_film_compensation = 3,  ///< 3: what rounding has cut off (add_compensated of math.h)
   k_film_rejected = 6,      ///< samples that were not finite or negative, as a float
   k_film_halves = 7,  ///< luminance of even samples minus that of odd ones: two independent halves
   k_film_planes = 8,

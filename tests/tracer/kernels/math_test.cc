@@ -131,6 +131,34 @@ TEST(Math, ArccosineInTurns) {
   EXPECT_TRUE(std::isfinite(arccosine_turns(1.0000001f)));
 }
 
+TEST(Math, SumsOfManyFloatsAreThoseOfDoubles) {
+  // Equal addends, whose rounding errs the same way each time, and addends of all sizes and signs.
+  for (const bool equal : {true, false}) {
+    std::mt19937 random(6);
+    std::uniform_real_distribution<float> exponent(-20, 20);
+    float sum = 0, rest = 0;
+    double exact = 0, size = 0;
+    for (int i = 0; i < 1000000; ++i) {
+      const float x = equal ? 0.1f : (i % 3 == 0 ? -1.0f : 1.0f) * std::exp2(exponent(random));
+      add_compensated(&sum, &rest, x);
+      exact += double{x};
+      size += std::fabs(double{x});
+    }
+    // 2^-46 for each of a million additions, of the sizes they had: far below a float's own ulp.
+    EXPECT_NEAR(double{sum} + double{rest}, exact, 1e-11 * size) << equal;
+  }
+}
+
+TEST(Math, IntegersOfWhatNoIntHolds) {
+  EXPECT_EQ(to_held_integer(3e9f), 1 << 30);
+  EXPECT_EQ(to_held_integer(-1e30f), -(1 << 30));
+  EXPECT_EQ(to_held_integer(std::numeric_limits<float>::infinity()), 1 << 30);
+  EXPECT_EQ(to_held_integer(std::numeric_limits<float>::quiet_NaN()), -(1 << 30));
+  EXPECT_EQ(to_held_integer(-7.0f), -7);
+  for (const float x : {1e10f, 1e30f, std::numeric_limits<float>::infinity()})
+    EXPECT_TRUE(std::fabs(sine(x)) <= 1) << x;
+}
+
 TEST(Math, NanEndsAndStaysInItsLane) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   // No loop depends on a value; nothing to wait for. What comes out is not asked, but exponential's

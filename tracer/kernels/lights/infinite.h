@@ -67,7 +67,8 @@ DS_FN real3 infinite_escape(LightTables t, uint at, real3 direction, real* pdf) 
   const real3 d = vec(dot(direction, uniform3(m)), dot(direction, uniform3(m + 3)),
                       dot(direction, uniform3(m + 6)));
   const LatLong where = lat_long_of(d, (float)width, (float)height);
-  const real x = where.column + 0.5f;
+  // The bound is never passed but by NaN, which must not leave the tables.
+  const real x = lesser(where.column + 0.5f, (real)((float)width + 0.5f));
   const real y = where.row + 0.5f;
   const natural whole_x = to_natural(x);
   const natural column = choose_natural(whole_x >= width, whole_x - width, whole_x);

@@ -12,6 +12,7 @@ enum { DS_CHECKERBOARD3D_INPUTS(DS_INPUT_INDEX) checkerboard3d_inputs };
 DS_FN real3 checkerboard3d_evaluate(TexturePoint at, DS_GLOBAL float* numbers,
                                     const real3* inputs) {
   const real3 p = at.position;
-  const integer sum = to_integer(floor(p.x)) + to_integer(floor(p.y)) + to_integer(floor(p.z));
-  return choose((sum & 1) == 0, inputs[checkerboard3d_texture1], inputs[checkerboard3d_texture2]);
+  const integer odd =
+      (to_held_integer(floor(p.x)) ^ to_held_integer(floor(p.y)) ^ to_held_integer(floor(p.z))) & 1;
+  return choose(odd == 0, inputs[checkerboard3d_texture1], inputs[checkerboard3d_texture2]);
 }

@@ -47,14 +47,14 @@ DS_FN real3 imagemap_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const r
   const real x = at.u * (float)as_uint(numbers[imagemap_width]);
   const real y = at.v * (float)as_uint(numbers[imagemap_height]);
   if (as_uint(numbers[imagemap_linear]) == 0u) {
-    return imagemap_texel(at, numbers, to_integer(floor(x)), to_integer(floor(y)));
+    return imagemap_texel(at, numbers, to_held_integer(floor(x)), to_held_integer(floor(y)));
   }
   const real left = floor(x - 0.5f);
   const real top = floor(y - 0.5f);
   const real fx = x - 0.5f - left;
   const real fy = y - 0.5f - top;
-  const integer column = to_integer(left);
-  const integer row = to_integer(top);
+  const integer column = to_held_integer(left);
+  const integer row = to_held_integer(top);
   const real3 above = lerp3(imagemap_texel(at, numbers, column, row),
                             imagemap_texel(at, numbers, column + 1, row), fx);
   const real3 below = lerp3(imagemap_texel(at, numbers, column, row + 1),
