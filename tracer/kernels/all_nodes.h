@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every material, texture and light as C++ functions, one lane wide, in namespace ds::kernels. For
-// the host's tables, for packing, and for tests against closed forms.
+// Every material, texture and light, the camera and surface points as C++ functions, one lane wide,
+// in namespace ds::kernels. For the host's tables, for packing, and for tests against closed forms.
 #pragma once
 
 #include "tracer/kernels/layout.h"
@@ -18,7 +18,8 @@
 #endif
 
 // clang-format off
-namespace ds::kernels {
+namespace ds::DS_KERNELS {
+#include "tracer/kernels/camera.h"
 #include "tracer/kernels/lights/constant_infinite.h"
 #include "tracer/kernels/lights/infinite.h"
 #include "tracer/kernels/lights/mesh.h"
@@ -31,6 +32,7 @@ namespace ds::kernels {
 #include "tracer/kernels/materials/metal2.h"
 #include "tracer/kernels/materials/mirror.h"
 #include "tracer/kernels/materials/mix.h"
+#include "tracer/kernels/surface.h"
 #include "tracer/kernels/textures/add.h"
 #include "tracer/kernels/textures/checkerboard3d.h"
 #include "tracer/kernels/textures/fbm.h"
@@ -40,7 +42,7 @@ namespace ds::kernels {
 #include "tracer/kernels/textures/scale.h"
 #include "tracer/kernels/textures/subtract.h"
 #include "tracer/kernels/texture_program.h"
-}  // namespace ds::kernels
+}  // namespace ds::DS_KERNELS
 // clang-format on
 
 #if defined(__GNUC__)

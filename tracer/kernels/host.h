@@ -1,15 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // The kernel headers as C++20, one lane wide: the same equations on the host, for tables, tests and
 // precision audits. Compiled with contraction off and IEEE arithmetic, they give the device's bits.
+// With DS_REAL_DOUBLE defined, `real` is a double and the namespace ds::kernels_double:
+// tests/precision compares the two.
 #pragma once
 
 #include <bit>
 #include <cmath>
 #include <cstdint>
 
-namespace ds::kernels {
+#ifdef DS_REAL_DOUBLE
+#  define DS_KERNELS kernels_double
+#else
+#  define DS_KERNELS kernels
+#endif
+
+namespace ds::DS_KERNELS {
 
 using uint = std::uint32_t;
+using std::copysign;
+using std::fabs;
 using std::floor;
 using std::fma;
 using std::sqrt;
@@ -24,4 +34,4 @@ inline uint as_uint(float value) {
   return std::bit_cast<uint>(value);
 }
 
-}  // namespace ds::kernels
+}  // namespace ds::DS_KERNELS

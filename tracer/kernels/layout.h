@@ -4,6 +4,6 @@
 
 #include "tracer/kernels/host.h"
 
-namespace ds::kernels {
+namespace ds::DS_KERNELS {
 #include "tracer/kernels/types.h"
-}  // namespace ds::kernels
+}  // namespace ds::DS_KERNELS

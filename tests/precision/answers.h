@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// The answers of questions.h by the kernels of namespace ds::DS_KERNELS, in namespace
+// ds::audit::DS_AUDIT. Included once by each of the two builds.
+#pragma once
+
+#include "tests/precision/kernels_for_audit.h"
+#include "tests/precision/questions.h"
+#include "tracer/kernels/lists.h"
+
+#include <bit>
+#include <cstring>
+
+namespace ds::audit::DS_AUDIT {
+
+using namespace ds::DS_KERNELS;
+
+namespace {
+
+real3 of(const std::array<float, 3>& v) {
+  return vec(real{v[0]}, real{v[1]}, real{v[2]});
+}
+real2 of(float x, float y) {
+  real2 r;
+  r.x = real{x};
+  r.y = real{y};
+  return r;
+}
+Three three(real3 v) {
+  return {double{v.x}, double{v.y}, double{v.z}};
+}
+
+// Stand-ins for the one row of the list that has no BSDF.
+BsdfValue mix_evaluate(const real*, Viewer, real3) {
+  return no_value();
+}
+BsdfSample mix_sample(const real*, Viewer, real2, real2) {
+  return no_sample();
+}
+
+}  // namespace
+
+BsdfAnswer ask(const BsdfQuestion& q) {
+  const std::vector<real> inputs(q.inputs.begin(), q.inputs.end());
+  Viewer viewer;
+  viewer.wo = of(q.wo);
+  viewer.outside = q.outside;
+  BsdfValue value = no_value();
+  BsdfSample sample = no_sample();
+  int row = 0;
+#define DS_ASK(sdl_name, prefix, PREFIX)                                            \
+  if (row++ == q.material) {                                                        \
+    value = prefix##_evaluate(inputs.data(), viewer, of(q.wi));                     \
+    sample = prefix##_sample(inputs.data(), viewer, of(q.numbers[0], q.numbers[1]), \
+                             of(q.numbers[2], q.numbers[3]));                       \
+  }
+  DS_ALL_MATERIALS(DS_ASK)
+#undef DS_ASK
+  BsdfAnswer a;
+  a.value = three(value.value);
+  a.pdf = double{value.pdf};
+  a.valid = sample.valid;
+  a.specular = sample.specular;
+  a.glossy = sample.glossy;
+  a.sampled = three(sample.wi);
+  a.weight = three(sample.weight);
+  a.sampled_pdf = double{sample.pdf};
+  return a;
+}
+
+LightAnswer ask(const LightQuestion& q) {
+  const LightTables t = {q.lights->data(), q.tables->data(), q.triangles->data()};
+  const uint at = k_light_parameters;
+  const real3 from = of(q.from);
+  const real2 u = of(q.numbers[0], q.numbers[1]);
+  LightSample s = no_light();
+  real3 escape = splat(real{0});
+  real escape_pdf = 0;
+  switch (q.kind) {
+    case LightKind::point:
+      s = point_sample(t, at, from, u);
+      break;
+    case LightKind::spot:
+      s = spot_sample(t, at, from, u);
+      break;
+    case LightKind::mesh:
+      s = mesh_sample(t, at, from, u);
+      break;
+    case LightKind::sun:
+      s = sun_sample(t, at, from, u);
+      escape = sun_escape(t, at, of(q.direction), &escape_pdf);
+      break;
+    case LightKind::infinite:
+      s = infinite_sample(t, at, from, u);
+      escape = infinite_escape(t, at, of(q.direction), &escape_pdf);
+      break;
+  }
+  return {three(s.wi), three(s.radiance), double{s.pdf}, three(escape), double{escape_pdf}};
+}
+
+namespace {
+ViewData view_of(const std::array<float, 32>& words) {
+  ViewData view;
+  static_assert(sizeof(view) == sizeof(words));
+  std::memcpy(&view, words.data(), sizeof(view));
+  return view;
+}
+}  // namespace
+
+Three ask(const SkyQuestion& q) {
+  const ViewData view = view_of(q.view);
+  const Sampler sampler =
+      sampler_for(view.seed_low, view.seed_high, q.y * view.width + q.x, q.sample);
+  const real2 f = sample_pair(sampler, 0u);
+  const real x = to_real(q.x) + 0.5f + filter_offset(q.filter->data(), f.x);
+  const real y = to_real(q.y) + 0.5f + filter_offset(q.filter->data(), f.y);
+  const CameraRay ray = camera_ray(&view, x, y, of(0, 0));
+  const LightTables t = {q.lights->data(), q.tables->data(), nullptr};
+  real pdf = 0;
+  return three(infinite_escape(t, k_light_parameters, ray.direction, &pdf));
+}
+
+CameraAnswer ask(const CameraQuestion& q) {
+  const ViewData view = view_of(q.view);
+  const real x = filter_offset(q.filter->data(), real{q.filter_numbers[0]});
+  const real y = filter_offset(q.filter->data(), real{q.filter_numbers[1]});
+  const CameraRay ray = camera_ray(&view, real{q.pixel[0]} + x, real{q.pixel[1]} + y,
+                                   of(q.lens_numbers[0], q.lens_numbers[1]));
+  return {{double{x}, double{y}}, three(ray.origin), three(ray.direction)};
+}
+
+SurfaceAnswer ask(const SurfaceQuestion& q) {
+  const real3 p0 = of(q.corners[0]);
+  const real3 e1 = sub(of(q.corners[1]), p0);
+  const real3 e2 = sub(of(q.corners[2]), p0);
+  // As surface_of of path.cl.
+  const real3 position = add(p0, add_scaled(scale(e1, real{q.b1}), e2, real{q.b2}));
+  return {three(position), three(triangle_normal(e1, e2)), double{position_error(p0, e1, e2)}};
+}
+
+}  // namespace ds::audit::DS_AUDIT

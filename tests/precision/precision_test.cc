@@ -1,0 +1,480 @@
+// SPDX-License-Identifier: Apache-2.0
+// The precision audit: the kernels in float against the same sources in double, stage by stage, on
+// inputs at the ends of their ranges. Prints the worst of each stage; a stage that passes its bound
+// fails the test. A bound is in half-ulps of float (2^-24 = 6e-8) times the condition of the
+// question: how much the exact answer itself moves when an input or an intermediate value that must
+// be rounded moves by one of them.
+#include "tests/precision/questions.h"
+#include "tests/precision/stage.h"
+#include "tests/render/pictures.h"
+#include "tests/tracer/accel/rays.h"
+#include "tracer/device/scene_pack.h"
+#include "tracer/render/view.h"
+#include "tracer/scene/type_tables.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+namespace ds {
+namespace {
+
+using namespace audit;
+
+/// Numbers in [0, 1), and the ends of that.
+class Numbers {
+ public:
+  explicit Numbers(unsigned seed) : random_(seed) {}
+  float next() {
+    const auto bits = static_cast<std::uint32_t>(random_());
+    if (bits % 32 == 0) return 0;
+    if (bits % 32 == 1) return 0.99999994f;
+    return static_cast<float>(bits >> 8) * 0x1p-24f;
+  }
+  double between(double low, double high) { return low + (high - low) * double{next()}; }
+  std::array<float, 3> direction() {
+    const double z = between(-1, 1), turn = between(-M_PI, M_PI);
+    const double s = std::sqrt(std::max(0.0, 1 - z * z));
+    return {static_cast<float>(s * std::cos(turn)), static_cast<float>(s * std::sin(turn)),
+            static_cast<float>(z)};
+  }
+  std::uint32_t bits() { return static_cast<std::uint32_t>(random_()); }
+
+ private:
+  std::mt19937 random_;
+};
+
+double distance(const Three& a, const Three& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+double greatest(const Three& a) {
+  return std::max({std::fabs(a[0]), std::fabs(a[1]), std::fabs(a[2])});
+}
+/// Largest difference of a component over the largest component of `b`.
+double relative(const Three& a, const Three& b) {
+  const double scale = greatest(b);
+  return scale == 0 ? greatest(a) : greatest({a[0] - b[0], a[1] - b[1], a[2] - b[2]}) / scale;
+}
+double relative(double a, double b) {
+  return b == 0 ? std::fabs(a) : std::fabs(a - b) / std::fabs(b);
+}
+
+/// A material's inputs with everything at its default but the roughnesses.
+std::vector<float> inputs_of(const NodeType& type, float u, float v, Numbers& numbers) {
+  std::vector<float> p;
+  for (const InputType& input : type.inputs)
+    for (int i = 0; i < input.width; ++i)
+      p.push_back(input.name == "uroughness"   ? u
+                  : input.name == "vroughness" ? v
+                  : input.width == 3 ? input.default_value * (0.2f + 0.8f * numbers.next())
+                                     : input.default_value);
+  return p;
+}
+
+std::array<float, 3> above(double cosine, double azimuth) {
+  const double s = std::sqrt(1 - cosine * cosine);
+  return {static_cast<float>(s * std::cos(azimuth)), static_cast<float>(s * std::sin(azimuth)),
+          static_cast<float>(cosine)};
+}
+
+/// How near a number is to the ends of [0, 1].
+double rim_of(float x) {
+  return std::min(double{x}, 1 - double{x});
+}
+
+TEST(Precision, Bsdf) {
+  Stage value("bsdf: value and pdf"), weight("bsdf: sample's weight"),
+      way("bsdf: sample's direction");
+  Numbers numbers(1);
+  int choices_differ = 0, asked = 0;
+  for (std::size_t row = 0; row < material_types().size(); ++row) {
+    const NodeType& type = material_types()[row];
+    if (type.name == "mix") continue;
+    for (const float u : {1e-9f, 1e-3f, 0.03f, 0.1f, 0.3f, 1.0f})
+      for (const float v : {u, std::min(1.0f, 2 * u)})
+        for (const double cosine : {1.0, 0.7, 0.3, 0.05, 1e-3})
+          for (int i = 0; i < 200; ++i) {
+            BsdfQuestion q;
+            q.material = static_cast<int>(row);
+            q.inputs = inputs_of(type, u, v, numbers);
+            q.wo = above(cosine, numbers.between(-3, 3));
+            q.outside = i % 2 == 0;
+            for (float& n : q.numbers)
+              n = numbers.next();
+            // Half of the directions anywhere, half where the lobe is.
+            q.wi = numbers.direction();
+            if (i % 4 < 2) {
+              const BsdfAnswer aim = in_double::ask(q);
+              for (std::size_t k = 0; k < 3; ++k)
+                q.wi[k] = static_cast<float>(aim.sampled[k]);
+            }
+            const BsdfAnswer f = in_float::ask(q), d = in_double::ask(q);
+            ++asked;
+            // D falls with (angle of the half vector / alpha)^4. The half vector is made from a sum
+            // that is rounded to half-ulps of 1 and may be short, so its angle is known to 2^-24
+            // over its length, and ln D to four times that over alpha.
+            const double alpha = std::max(1e-3, double{std::min(u, v)});
+            const double sum =
+                std::max(1e-3, std::hypot(double{q.wo[0] + q.wi[0]}, double{q.wo[1] + q.wi[1]},
+                                          double{q.wo[2] + q.wi[2]}));
+            const double condition = 1 + 1 / (alpha * sum);
+            const std::string where = fmt::format("{} alpha {} {} cos {}", type.name, u, v, cosine);
+            if (greatest(d.value) > 1e-12) value.add(relative(f.value, d.value), condition, where);
+            if (d.pdf > 1e-12) value.add(relative(f.pdf, d.pdf), condition, where);
+            if (f.valid != d.valid || f.specular != d.specular || f.glossy != d.glossy ||
+                distance(f.sampled, d.sampled) > 0.01) {
+              ++choices_differ;  // a number on the border between two lobes
+              continue;
+            }
+            if (!d.valid) continue;
+            // A disc's height is sqrt(1 - r^2): near the rim, where a number is within n of 0 or 1,
+            // half-ulps of 1 become half-ulps over sqrt(n).
+            const double rim = std::sqrt(
+                std::max(0x1p-24, std::min({rim_of(q.numbers[0]), rim_of(q.numbers[1])})));
+            way.add(distance(f.sampled, d.sampled), 1 + 1 / rim, where);
+            const double both = std::max(
+                1e-3, std::hypot(double{q.wo[0]} + d.sampled[0], double{q.wo[1]} + d.sampled[1],
+                                 double{q.wo[2]} + d.sampled[2]));
+            // That turns the direction, whose height the weight is in proportion to.
+            const double height = std::max(1e-4, std::fabs(d.sampled[2]));
+            weight.add(relative(f.weight, d.weight), 1 / (alpha * both) + (1 + 1 / rim) / height,
+                       where);
+          }
+  }
+  // The fits have coefficients of up to 20 that sum to about 1, and glossy2 takes what they give
+  // from 1, down to 0.05: 20 times 20 half-ulps at the worst.
+  value.expect_within(256);
+  way.expect_within(12);
+  weight.expect_within(12);
+  EXPECT_LT(choices_differ, asked / 1000);
+}
+
+/// A scene of one light, packed.
+class Packed {
+ public:
+  explicit Packed(const Scene& scene) {
+    const PackedScene packed = pack_scene(scene, features_of(scene, Camera{}), 3, BvhQuality::low);
+    for (const auto& [from, to] : {std::pair{&packed.lights, &lights},
+                                   {&packed.tables, &tables},
+                                   {&packed.triangles, &triangles}})
+      for (const std::uint32_t word : from->words())
+        to->push_back(std::bit_cast<float>(word));
+    filter.assign(tables.begin() + packed.data.filter_table, tables.end());
+  }
+  std::vector<float> lights, tables, triangles, filter;
+};
+
+Scene triangle_scene() {
+  Scene scene;
+  pictures::add_object(scene, pictures::quad({0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}),
+                       pictures::add_matte(scene, {1, 1, 1}));
+  return scene;
+}
+
+Scene scene_of(audit::LightKind kind) {
+  Scene scene = triangle_scene();
+  switch (kind) {
+    case audit::LightKind::point:
+      scene.lights.push_back(pictures::point_light({0.2f, 0.1f, 1}, {3, 2, 1}));
+      break;
+    case audit::LightKind::spot:
+      scene.lights.push_back(
+          pictures::spot_light({0.2f, 0.1f, 1}, {0.1f, 0, -1}, 35, 20, {3, 2, 1}));
+      break;
+    case audit::LightKind::mesh:
+      scene.materials[0].emits = true;
+      scene.materials[0].emission.constant = {3, 2, 1};
+      break;
+    case audit::LightKind::sun:
+      scene.lights.push_back(pictures::sun_light({0.3f, -0.4f, 0.7f}, 0.265, {5, 4, 3}));
+      break;
+    case audit::LightKind::infinite:
+      scene.images.push_back(pictures::small_sky());
+      scene.lights.push_back(pictures::image_light(0));
+      break;
+  }
+  return scene;
+}
+
+/// What the spot of scene_of gives on its axis at the question's distance.
+double unramped(const LightQuestion& q) {
+  const double squared = std::pow(double{q.from[0]} - 0.2, 2) +
+                         std::pow(double{q.from[1]} - 0.1, 2) + std::pow(double{q.from[2]} - 1, 2);
+  return 3 / squared;
+}
+
+TEST(Precision, Lights) {
+  Stage way("light: direction"), radiance("light: radiance"), pdf("light: pdf"),
+      escape("light: radiance of what escapes");
+  Numbers numbers(2);
+  int borders = 0, asked = 0;
+  for (const auto kind : {audit::LightKind::point, audit::LightKind::spot, audit::LightKind::mesh,
+                          audit::LightKind::sun, audit::LightKind::infinite}) {
+    const Packed packed(scene_of(kind));
+    for (int i = 0; i < 20000; ++i) {
+      LightQuestion q;
+      q.kind = kind;
+      q.lights = &packed.lights;
+      q.tables = &packed.tables;
+      q.triangles = &packed.triangles;
+      const double far = i % 3 == 0 ? 1e-3 : i % 3 == 1 ? 1 : 1e4;
+      const std::array<float, 3> from = numbers.direction();
+      for (std::size_t k = 0; k < 3; ++k)
+        q.from[k] = static_cast<float>(double{from[k]} * far) + (k == 2 ? -1e-3f : 0);
+      for (float& n : q.numbers)
+        n = numbers.next();
+      q.direction = numbers.direction();
+      const LightAnswer f = in_float::ask(q), d = in_double::ask(q);
+      ++asked;
+      const std::string where = fmt::format("kind {} at {:g} m", static_cast<int>(kind), far);
+      const bool image = kind == audit::LightKind::infinite;
+      // On a cell's border, or on a disc's rim, a rounding decides between two answers.
+      if ((f.pdf > 0) != (d.pdf > 0) || (image && relative(f.pdf, d.pdf) > 0.01) ||
+          (f.escape_pdf > 0) != (d.escape_pdf > 0) ||
+          (image && relative(f.escape_pdf, d.escape_pdf) > 0.01)) {
+        ++borders;
+        continue;
+      }
+      // A point of an image's cell is found by a number less its row's share, which is 1/300 or so:
+      // known to 300 half-ulps of 1. From there to the next column a sky's radiance may rise a
+      // thousandfold.
+      const double found = image ? 300 : 1;
+      if (d.pdf > 0) {
+        way.add(distance(f.wi, d.wi), found, where);
+        // The spot's ramp goes to nothing, where no difference is small beside it: beside its
+        // strength without the ramp, then, of which 0.12 of cosine take it to the fourth power.
+        const double strength = kind == audit::LightKind::spot ? unramped(q) : greatest(d.radiance);
+        radiance.add(greatest({f.radiance[0] - d.radiance[0], f.radiance[1] - d.radiance[1],
+                               f.radiance[2] - d.radiance[2]}) /
+                         strength,
+                     image                            ? found * 1000
+                     : kind == audit::LightKind::spot ? 4 / 0.12
+                                                      : 1,
+                     where);
+        // A mesh's pdf is over the cosine at the light, an image's over the sine from its pole.
+        const double under = kind == audit::LightKind::mesh ? std::fabs(d.wi[2])
+                             : image                        ? std::hypot(d.wi[0], d.wi[1])
+                                                            : 1;
+        pdf.add(relative(f.pdf, d.pdf), found / std::max(under, 1e-6), where);
+      }
+      // A place in the image is known to half-ulps of its width; the disc of a sun has none.
+      if (image || kind == audit::LightKind::sun)
+        escape.add(relative(f.escape, d.escape), image ? 19 * 1000 : 1, where);
+    }
+  }
+  way.expect_within(4);
+  radiance.expect_within(8);
+  pdf.expect_within(8);
+  escape.expect_within(1);
+  EXPECT_LT(borders, asked / 200);
+}
+
+TEST(Precision, FilterAndCamera) {
+  Stage offset("filter: offset in the pixel"), origin("camera: origin on the lens"),
+      direction("camera: direction");
+  const Packed packed(triangle_scene());
+  Numbers numbers(3);
+  for (const int size : {1, 17, 512, 16384})
+    for (const double fov : {0.01, 49.0, 179.0}) {
+      Camera camera;
+      camera.position = {0.3, -2.6, 1.5};
+      camera.fov_deg = fov;
+      camera.lens_radius_m = 0.05;
+      camera.focus_distance_m = 2.6;
+      EngineSettings engine;
+      engine.width = engine.height = size;
+      const kernels::ViewData view = view_data(camera, engine);
+      for (int i = 0; i < 2000; ++i) {
+        CameraQuestion q;
+        std::memcpy(q.view.data(), &view, sizeof(view));
+        q.filter = &packed.filter;
+        for (float& x : q.pixel)
+          x = static_cast<float>(numbers.bits() % static_cast<unsigned>(size)) + 0.5f;
+        for (float& n : q.filter_numbers)
+          n = numbers.next();
+        for (float& n : q.lens_numbers)
+          n = numbers.next();
+        const CameraAnswer f = in_float::ask(q), d = in_double::ask(q);
+        const std::string where = fmt::format("{} pixels, {} degrees", size, fov);
+        for (std::size_t k = 0; k < 2; ++k)
+          offset.add(std::fabs(f.offset[k] - d.offset[k]), 1, where);
+        origin.add(distance(f.origin, d.origin), 2.6, where);
+        // A pixel's place is a float of up to `size`, its half-ulp 2^-24 of the whole picture,
+        // which spans 2 tan(fov / 2) of the direction before that is made a unit vector.
+        direction.add(distance(f.direction, d.direction), 1 + 2 * std::tan(fov * M_PI / 360),
+                      where);
+      }
+    }
+  offset.expect_within(2);
+  origin.expect_within(2);
+  direction.expect_within(4);
+}
+
+TEST(Precision, Surface) {
+  // Triangles of every size, shape and place: the point on them is off their plane by less than the
+  // bound that rays are started at (twice this bound away).
+  Stage off_plane("surface: point off its plane"), normal("surface: normal");
+  Numbers numbers(4);
+  for (int i = 0; i < 40000; ++i) {
+    SurfaceQuestion q;
+    const double size = std::pow(10, numbers.between(-6, 6));
+    const double place = i % 2 == 0 ? 0 : size * std::pow(10, numbers.between(0, 4));
+    for (auto& corner : q.corners)
+      for (float& x : corner)
+        x = static_cast<float>(place + size * numbers.between(-1, 1));
+    q.b1 = numbers.next();
+    q.b2 = (1 - q.b1) * numbers.next();
+    const SurfaceAnswer f = in_float::ask(q), d = in_double::ask(q);
+    const std::string where = fmt::format("{:g} m at {:g} m", size, place);
+    // A sliver's normal is a difference of nearly equal products.
+    Three e1, e2;
+    for (std::size_t k = 0; k < 3; ++k) {
+      e1[k] = double{q.corners[1][k]} - double{q.corners[0][k]};
+      e2[k] = double{q.corners[2][k]} - double{q.corners[0][k]};
+    }
+    const double area = std::hypot(e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2],
+                                   e1[0] * e2[1] - e1[1] * e2[0]);
+    const double extent = std::max(greatest(e1), greatest(e2));
+    if (area == 0) continue;
+    normal.add(distance(f.normal, d.normal), extent * extent / area, where);
+    double height = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      height += (f.position[k] - d.position[k]) * d.normal[k];
+    // In half-ulps of the bound: 2^24 of them are all of it.
+    off_plane.add(std::fabs(height) / d.error, 0x1p24, where);
+  }
+  normal.expect_within(6);
+  off_plane.expect_within(1);
+}
+
+/// Moeller and Trumbore 1997, in double, over all triangles: nearest first.
+struct ExactHit {
+  double t = INFINITY, b1 = 0, b2 = 0, cosine = 0;
+  std::uint32_t id = 0xffffffffu;
+};
+ExactHit exact_hit(const rays::TestRay& ray, std::span<const rays::Corners> corners) {
+  ExactHit nearest;
+  const Vec3d o = to_double(ray.origin), d = to_double(ray.direction);
+  for (std::uint32_t id = 0; id < corners.size(); ++id) {
+    const Vec3d p0 = to_double(corners[id][0]);
+    const Vec3d e1 = to_double(corners[id][1]) - p0, e2 = to_double(corners[id][2]) - p0;
+    const Vec3d p = cross(d, e2);
+    const double determinant = dot(e1, p);
+    if (determinant == 0) continue;
+    const Vec3d s = o - p0;
+    const double b1 = dot(s, p) / determinant;
+    const Vec3d q = cross(s, e1);
+    const double b2 = dot(d, q) / determinant;
+    const double t = dot(e2, q) / determinant;
+    if (b1 < 0 || b2 < 0 || b1 + b2 > 1 || t <= 0 || t >= nearest.t) continue;
+    nearest = {t, b1, b2, std::fabs(determinant) / (length(cross(e1, e2)) * length(d)), id};
+  }
+  return nearest;
+}
+
+TEST(Precision, Intersection) {
+  // bvh.cl is OpenCL C only: the device's answers against an oracle of another method in double.
+  Stage t("intersection: distance"), weights("intersection: weights");
+  Numbers numbers(5);
+  int asked = 0, others = 0;
+  for (const float scale : {1e-6f, 1.0f, 1e6f}) {
+    std::vector<rays::Corners> corners;
+    const Mesh sphere = pictures::sphere({0.1f * scale, 0.2f * scale, 0}, scale, 16, false);
+    for (const auto& triangle : sphere.triangles)
+      corners.push_back({sphere.positions[triangle[0]], sphere.positions[triangle[1]],
+                         sphere.positions[triangle[2]]});
+    // A ground a thousand times as large, and needles.
+    for (const Mesh& mesh :
+         {pictures::quad({0, 0, -scale}, {1e3f * scale, 0, 0}, {0, 1e3f * scale, 0}),
+          pictures::box({}, {0.5f * scale, 1e-5f * scale, 0.2f * scale})})
+      for (const auto& triangle : mesh.triangles)
+        corners.push_back({mesh.positions[triangle[0]], mesh.positions[triangle[1]],
+                           mesh.positions[triangle[2]]});
+    std::vector<rays::TestRay> all;
+    for (int i = 0; i < 6000; ++i) {
+      rays::TestRay ray;
+      const auto from = numbers.direction(), to = numbers.direction();
+      const float far = scale * static_cast<float>(i % 3 == 0 ? 0.5 : i % 3 == 1 ? 3 : 100);
+      ray.origin = {from[0] * far, from[1] * far, from[2] * far};
+      const Vec3 aim = {to[0] * scale * 0.8f, to[1] * scale * 0.8f, to[2] * scale * 0.8f};
+      ray.direction = i % 2 == 0 ? aim - ray.origin : Vec3{to[0], to[1], to[2]};
+      all.push_back(ray);
+    }
+    const std::vector<rays::TestHit> hits = rays::Tree(corners).nearest(all);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const ExactHit exact = exact_hit(all[i], corners);
+      ++asked;
+      if (exact.id != hits[i].id) {
+        ++others;  // through an edge, or two surfaces as near
+        continue;
+      }
+      if (!hits[i].met()) continue;
+      const rays::Corners& c = corners[exact.id];
+      const Vec3d o = to_double(all[i].origin);
+      double farthest = 0;
+      for (const Vec3& corner : c)
+        farthest = std::max(farthest, length(to_double(corner) - o));
+      // Corners are misplaced by half-ulps of their distance from the ray's start; seen along a
+      // ray that grazes, that is so much farther; and weights are that over the triangle's height
+      // as the ray sees it.
+      const double path = exact.t * length(to_double(all[i].direction));
+      const Vec3d e1 = to_double(c[1]) - to_double(c[0]), e2 = to_double(c[2]) - to_double(c[0]);
+      const double longest = std::max({length(e1), length(e2), length(e1 - e2)});
+      const double height = length(cross(e1, e2)) / longest;
+      const std::string where = fmt::format("scale {:g}, triangle {}", scale, exact.id);
+      t.add(relative(double{hits[i].t}, exact.t), 1 + farthest / (path * exact.cosine), where);
+      weights.add(std::max(std::fabs(double{hits[i].b1} - exact.b1),
+                           std::fabs(double{hits[i].b2} - exact.b2)),
+                  1 + farthest / (height * exact.cosine), where);
+    }
+  }
+  t.expect_within(4);
+  weights.expect_within(2);
+  EXPECT_LT(others, asked / 500);
+}
+
+TEST(Precision, Sum) {
+  // A pixel that looks at the sky: the host makes the very samples of the device (the same
+  // headers, the same bits) and adds them in double.
+  Stage sum("sum: of a pixel's samples");
+  pictures::Picture p;
+  p.scene = triangle_scene();
+  p.scene.images.push_back(pictures::small_sky());
+  p.scene.lights.push_back(pictures::image_light(0));
+  p.camera.position = {0, 0, 3};
+  p.camera.target = {1, 0.2, 3.4};
+  p.camera.fov_deg = 100;
+  p.engine.width = p.engine.height = 12;
+  p.engine.spp = 4096;
+  p.engine.seed = 0x0123456789abcdefu;
+  const Film film = pictures::trace(p);
+  const Packed packed(p.scene);
+  const kernels::ViewData view = view_data(p.camera, p.engine);
+  SkyQuestion q;
+  std::memcpy(q.view.data(), &view, sizeof(view));
+  q.filter = &packed.filter;
+  q.lights = &packed.lights;
+  q.tables = &packed.tables;
+  for (q.y = 0; q.y < 12; ++q.y)
+    for (q.x = q.y % 3; q.x < 12; q.x += 3) {
+      Three exact{};
+      for (q.sample = 0; q.sample < 4096; ++q.sample) {
+        const Three radiance = in_float::ask(q);
+        for (std::size_t c = 0; c < 3; ++c)
+          exact[c] += radiance[c] / 4096;
+      }
+      for (std::size_t c = 0; c < 3; ++c)
+        sum.add(relative(double{film.rgb[3 * (q.y * 12 + q.x) + c]}, exact[c]), 1,
+                fmt::format("pixel {}, {}", q.x, q.y));
+    }
+  // The film's own rounding is one half-ulp; what is summed beside the sum is rounded itself, 4096
+  // times, in half-ulps of half-ulps.
+  sum.expect_within(1.5);
+}
+
+}  // namespace
+}  // namespace ds
