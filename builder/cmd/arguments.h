@@ -4,6 +4,7 @@
 #include "builder/build/dataset.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,6 +22,9 @@ struct Arguments {
   std::string report_file, against;
   int most_spp = 0, seeds = 4;
   bool no_choices = false;
+  bool time = false, recalibrate = false;
+  std::optional<double> error;
+  std::string budget;
   bool json = false, dry_run = false, keep_going = false, force = false, explain = false;
 
   DatasetRequest request() const { return {target, overrides, output_folder, store_folder}; }
@@ -44,6 +48,7 @@ enum class Option {
   report_file,
   against,
   report_size,  ///< how much is measured
+  forecast,     ///< what time and disk are foretold for
 };
 
 /// A verb of the command. `run` returns the exit code: 0 where all is well, 1 where something

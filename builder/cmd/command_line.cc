@@ -87,6 +87,17 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
           ->type_name("N");
       verb.add_flag("--no-choices", to.no_choices, "leave out what settings and effects cost");
       return;
+    case Option::forecast:
+      verb.add_flag("--time", to.time, "foretell time and disk of what is stale");
+      verb.add_option("--error", to.error,
+                      "foretell them for this relative error of every picture (0.02)")
+          ->check(CLI::Range(1e-6, 1.0))
+          ->type_name("X");
+      verb.add_option("--budget", to.budget, "say which error this time buys (8h, 90m)")
+          ->type_name("TIME");
+      verb.add_flag("--recalibrate", to.recalibrate,
+                    "measure anew what is foretold from; else once for each program and device");
+      return;
     case Option::seed:
       verb.add_option("--seed", to.seed, "chooses the images of --rerender [0]")->type_name("N");
       return;

@@ -27,7 +27,11 @@ class UsageTest(TinyCase):
                           ["build", self.recipe, "--set", "engine.ssp=4"],
                           ["verify", self.recipe, "--rerender", "some"],
                           ["accuracy", self.recipe, "--against", "hours"], ["accuracy", self.recipe, "--spp", "1"],
-                          ["accuracy", self.recipe, "-o", "report.csv"]):
+                          ["accuracy", self.recipe, "-o", "report.csv"],
+                          ["plan", self.recipe, "--error", "0"], ["plan", self.recipe, "--error", "two"],
+                          ["plan", self.recipe, "--budget", "8"], ["plan", self.recipe, "--budget", "-1h"],
+                          ["plan", self.recipe, "--budget", "8h", "--error", "0.02"],
+                          ["plan", self.recipe, "--recalibrate"]):
             run = self.run_it(*arguments)
             self.assertEqual(run.code, 2, (arguments, str(run)))
             self.assertTrue(run.err.startswith("dsbuild: error: "), run)

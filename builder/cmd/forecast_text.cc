@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/cmd/forecast_text.h"
+
+#include "builder/cmd/plan_text.h"
+#include "builder/cmd/progress.h"
+#include "tracer/base/error.h"
+
+#include <algorithm>
+
+namespace ds {
+namespace {
+
+nlohmann::json interval_json(const Interval& interval) {
+  return {{"value", interval.value}, {"low", interval.low}, {"high", interval.high}};
+}
+
+}  // namespace
+
+std::string time_text(const Interval& seconds) {
+  return fmt::format("about {} ({} to {})", format_duration(seconds.value),
+                     format_duration(seconds.low), format_duration(seconds.high));
+}
+
+std::string size_text(const Interval& bytes) {
+  const char* unit = "kB";
+  double size = 1e3;
+  for (const char* larger : {"MB", "GB", "TB"}) {
+    if (bytes.value < 1000 * size) break;
+    unit = larger;
+    size *= 1000;
+  }
+  return fmt::format("{:.3g} {} ({:.3g} to {:.3g})", bytes.value / size, unit, bytes.low / size,
+                     bytes.high / size);
+}
+
+std::string pairs_text(const Forecast& forecast) {
+  std::size_t environment = 11;
+  std::size_t material = 8;
+  for (const PairForecast& pair : forecast.pairs) {
+    environment = std::max(environment, pair.environment.size());
+    material = std::max(material, pair.material.size());
+  }
+  std::string text =
+      fmt::format("{:{}}  {:{}}  {:>9}  {:>8}  {:>8}  {:>10}\n", "environment", environment,
+                  "material", material, "to make", "samples", "error", "s an image");
+  for (const PairForecast& pair : forecast.pairs)
+    text += fmt::format(
+        "{:{}}  {:{}}  {:>9}  {:>8.4g}  {:>8}  {:>10.3g}\n", pair.environment, environment,
+        pair.material, material, fmt::format("{}/{}", pair.made, pair.images), pair.spp,
+        pair.error > 0 ? fmt::format("{:.2g} %", 100 * pair.error) : "?", pair.seconds_an_image);
+  return text;
+}
+
+nlohmann::json to_json(const Forecast& forecast) {
+  nlohmann::json pairs = nlohmann::json::array();
+  for (const PairForecast& pair : forecast.pairs)
+    pairs.push_back({{"environment", pair.environment},
+                     {"material", pair.material},
+                     {"images", pair.images},
+                     {"made", pair.made},
+                     {"spp", pair.spp},
+                     {"error", pair.error},
+                     {"seconds_an_image", pair.seconds_an_image}});
+  return {{"seconds", interval_json(forecast.seconds)},
+          {"bytes", interval_json(forecast.bytes)},
+          {"bytes_by_kind", forecast.bytes_by_kind},
+          {"pairs", pairs}};
+}
+
+}  // namespace ds

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/report/forecast.h"
+
+#include "tracer/base/error.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <set>
+#include <system_error>
+#include <tuple>
+
+namespace ds {
+namespace {
+
+/// What the law of errors may be: 1 / n and the cube root bound what is met, and two noisy points
+/// tell no better.
+constexpr double k_steepest = -1, k_flattest = -1.0 / 3;
+/// Scatter assumed where every pair has but one probe.
+constexpr double k_assumed_scatter = 0.3;
+constexpr int k_assumed_freedom = 10;
+
+double squared(double x) {
+  return x * x;
+}
+
+double spp_of(const std::optional<ErrorLaw>& law, const Samples& samples) {
+  if (!samples.error) return samples.spp;
+  return law ? law->spp_for(*samples.error) : 1;
+}
+
+/// Size of a file, with the trend from few to more samples carried on by logarithm: less noise
+/// compresses better, and each halving of the noise saves about as many bits. Never less than half
+/// of what was seen.
+double size_at(const ProbedSize& size, const Probe& probe, double spp) {
+  const double doublings = std::log2(double(probe.high_spp) / probe.low_spp);
+  const double trend = (size.high - size.low) / doublings;
+  const double at = size.high + trend * std::log2(spp / probe.high_spp);
+  return std::max(at, 0.5 * size.high);
+}
+
+/// Sum over a finite population, from a few of it.
+class Total {
+ public:
+  /// `count` things, of which `values` are some.
+  void add(double count, const std::vector<double>& values) {
+    const double mean = mean_of(values);
+    value_ += count * mean;
+    terms_.push_back({count, mean, static_cast<double>(values.size())});
+    if (values.size() < 2 || mean <= 0) return;
+    for (const double value : values)
+      relative_squares_ += squared(value / mean - 1);
+    freedom_ += static_cast<int>(values.size()) - 1;
+  }
+  double value() const { return value_; }
+  /// Half of the 95 % interval that the scatter leaves.
+  double half() const {
+    const int freedom = freedom_ > 0 ? freedom_ : k_assumed_freedom;
+    const double scatter =
+        freedom_ > 0 ? std::sqrt(relative_squares_ / freedom_) : k_assumed_scatter;
+    double variance = 0;
+    for (const Term& t : terms_) {
+      if (t.count <= t.probes) continue;  // all of them were seen
+      variance += squared(t.count * scatter * t.mean) / t.probes * (1 - t.probes / t.count);
+    }
+    return student_t95(freedom) * std::sqrt(variance);
+  }
+
+ private:
+  struct Term {
+    double count, mean, probes;
+  };
+  std::vector<Term> terms_;
+  double value_ = 0, relative_squares_ = 0;
+  int freedom_ = 0;
+};
+
+/// Times of images and of scenes scatter apart, and so do sizes.
+struct Totals {
+  Total images, scenes, bytes;
+};
+
+Interval interval_of(double value, double half) {
+  return {value, std::max(0.0, value - half), value + half};
+}
+
+PairForecast forecast_pair(const ProbedWork& pair, const Samples& samples, Totals& totals,
+                           std::map<std::string, double>& by_kind) {
+  const std::vector<std::optional<ErrorLaw>> laws = error_laws(pair.probes);
+  PairForecast out{pair.work.environment,
+                   pair.work.material,
+                   pair.work.images,
+                   pair.work.trace + pair.work.remake,
+                   0,
+                   0,
+                   0};
+  std::vector<double> traced;
+  std::vector<double> remade;
+  std::vector<double> scenes;
+  std::vector<double> spp;
+  std::vector<double> squares;
+  for (std::size_t i = 0; i < pair.probes.size(); ++i) {
+    const Probe& probe = pair.probes[i];
+    spp.push_back(spp_of(laws[i], samples));
+    traced.push_back(probe.image_seconds + probe.sample_seconds * spp.back());
+    remade.push_back(probe.image_seconds);
+    scenes.push_back(probe.scene_seconds);
+    if (laws[i]) squares.push_back(squared(laws[i]->error(spp.back())));
+  }
+  out.spp = mean_of(spp);
+  out.seconds_an_image = mean_of(traced);
+  if (!squares.empty()) out.error = std::sqrt(mean_of(squares));
+  if (pair.work.trace > 0) totals.images.add(static_cast<double>(pair.work.trace), traced);
+  if (pair.work.remake > 0) totals.images.add(static_cast<double>(pair.work.remake), remade);
+  if (pair.work.scenes > 0) totals.scenes.add(static_cast<double>(pair.work.scenes), scenes);
+  for (const auto& [kind, count] : pair.work.files) {
+    if (count == 0) continue;
+    std::vector<double> sizes;
+    for (std::size_t i = 0; i < pair.probes.size(); ++i) {
+      const auto found = pair.probes[i].bytes.find(kind);
+      if (found != pair.probes[i].bytes.end())
+        sizes.push_back(size_at(found->second, pair.probes[i], spp[i]));
+    }
+    if (sizes.empty()) continue;
+    by_kind[kind] += static_cast<double>(count) * mean_of(sizes);
+    totals.bytes.add(static_cast<double>(count), sizes);
+  }
+  return out;
+}
+
+}  // namespace
+
+double ErrorLaw::error(double spp) const {
+  return at_one * std::pow(spp, slope);
+}
+
+double ErrorLaw::spp_for(double error) const {
+  DS_ASSERT(error > 0);
+  return std::max(1.0, std::pow(error / at_one, 1 / slope));
+}
+
+std::vector<std::optional<ErrorLaw>> error_laws(const std::vector<Probe>& probes) {
+  std::vector<double> slopes;
+  const auto known = [](const Probe& probe) { return probe.low_error && probe.high_error; };
+  for (const Probe& probe : probes)
+    if (known(probe) && *probe.low_error > 0 && *probe.high_error > 0)
+      slopes.push_back(std::log(*probe.high_error / *probe.low_error) /
+                       std::log(double(probe.high_spp) / probe.low_spp));
+  std::vector<std::optional<ErrorLaw>> laws;
+  for (const Probe& probe : probes) {
+    if (!known(probe)) {
+      laws.emplace_back();
+      continue;
+    }
+    ErrorLaw law;
+    if (!slopes.empty()) law.slope = std::clamp(mean_of(slopes), k_steepest, k_flattest);
+    law.at_one = *probe.high_error * std::pow(probe.high_spp, -law.slope);
+    laws.emplace_back(law);
+  }
+  return laws;
+}
+
+std::vector<PairWork> work_of(const Plan& plan, bool keep_film) {
+  using SceneName = std::tuple<std::filesystem::path, std::filesystem::path, std::filesystem::path>;
+  std::map<std::pair<std::string, std::string>, PairWork> pairs;
+  std::map<std::pair<std::string, std::string>, std::set<SceneName>> scenes;
+  for (const PlannedImage& image : plan.images) {
+    const std::pair<std::string, std::string> name{image.spec.environment_name,
+                                                   image.spec.material_name};
+    PairWork& pair = pairs[name];
+    pair.environment = name.first;
+    pair.material = name.second;
+    ++pair.images;
+    std::uint64_t to_make = 0;
+    for (const PlannedFile& file : image.files)
+      if (file.state == FileState::to_make) {
+        ++pair.files[file.output.kind];
+        ++to_make;
+      }
+    if (image.trace_film) {
+      ++pair.trace;
+      if (keep_film) ++pair.files["film"];
+    } else if (to_make > 0) {
+      ++pair.remake;
+    }
+    if (image.trace_film || image.trace_geometry)
+      scenes[name].insert(
+          {image.spec.model_file, image.spec.material_file, image.spec.environment_folder});
+  }
+  std::vector<PairWork> work;
+  for (auto& [name, pair] : pairs) {
+    pair.scenes = scenes[name].size();
+    work.push_back(std::move(pair));
+  }
+  return work;
+}
+
+std::vector<ProbedWork> join(const std::vector<PairWork>& work, const Calibration& calibration) {
+  std::vector<ProbedWork> joined;
+  for (const PairWork& pair : work)
+    for (std::size_t i = 0; i < calibration.pairs.size(); ++i)
+      if (calibration.pairs[i].environment == pair.environment &&
+          calibration.pairs[i].material == pair.material)
+        joined.push_back({pair, calibration.probes[i]});
+  return joined;
+}
+
+Forecast forecast(const std::vector<ProbedWork>& work, const Samples& samples) {
+  Forecast out;
+  Totals totals;
+  for (const ProbedWork& pair : work)
+    out.pairs.push_back(forecast_pair(pair, samples, totals, out.bytes_by_kind));
+  const double seconds = totals.images.value() + totals.scenes.value();
+  out.seconds = interval_of(
+      seconds, std::hypot(totals.images.half(), totals.scenes.half(), k_drift * seconds));
+  out.bytes = interval_of(totals.bytes.value(), totals.bytes.half());
+  return out;
+}
+
+std::optional<Interval> error_for(const std::vector<ProbedWork>& work, double seconds) {
+  const auto knows_error = [](const ProbedWork& pair) {
+    for (const auto& law : error_laws(pair.probes))
+      if (!law) return false;
+    return true;
+  };
+  if (work.empty() || !std::all_of(work.begin(), work.end(), knows_error)) return std::nullopt;
+  if (forecast(work, {std::nullopt, 1}).seconds.value > seconds) return std::nullopt;
+  // Time falls as the error grows: halve the range of its logarithm until it is narrow.
+  const auto least_error = [&](double Interval::*bound) {
+    double low = std::log(1e-6);
+    double high = std::log(100.0);
+    for (int i = 0; i < 60; ++i) {
+      const double middle = (low + high) / 2;
+      const bool fits = forecast(work, {std::exp(middle), 1}).seconds.*bound <= seconds;
+      (fits ? high : low) = middle;
+    }
+    return std::exp(high);
+  };
+  return Interval{least_error(&Interval::value), least_error(&Interval::low),
+                  least_error(&Interval::high)};
+}
+
+std::optional<double> parse_duration(const std::string& text) {
+  double seconds = 0;
+  double last_unit = 1e9;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (at != end) {
+    double value = 0;
+    const auto [letter, error] = std::from_chars(at, end, value, std::chars_format::fixed);
+    if (error != std::errc() || letter == end || value < 0) return std::nullopt;
+    const double unit = *letter == 'h' ? 3600 : *letter == 'm' ? 60 : *letter == 's' ? 1 : 0;
+    // Hours before minutes before seconds, each once.
+    if (unit == 0 || unit >= last_unit) return std::nullopt;
+    last_unit = unit;
+    seconds += unit * value;
+    at = letter + 1;
+  }
+  if (!(seconds > 0) || !std::isfinite(seconds)) return std::nullopt;
+  return seconds;
+}
+
+}  // namespace ds

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/report/calibration.h"
+#include "builder/report/fit.h"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ds {
+
+/// How much of a pair is to be made.
+struct PairWork {
+  std::string environment, material;
+  std::uint64_t images = 0;                    ///< of the recipe
+  std::uint64_t trace = 0;                     ///< films to trace
+  std::uint64_t remake = 0;                    ///< images of which only other files are made
+  std::uint64_t scenes = 0;                    ///< to load: each once, its images follow each other
+  std::map<std::string, std::uint64_t> files;  ///< to make, by kind, films too
+};
+
+/// The work that a plan leaves, by pair, in the order of images_to_probe. Images that fail count as
+/// images only.
+std::vector<PairWork> work_of(const Plan& plan, bool keep_film);
+
+/// How many samples the images get.
+struct Samples {
+  std::optional<double> error;  ///< as many as it takes to this relative error, image by image
+  int spp = 1;                  ///< without: this number for all
+};
+
+/// What is foretold of one pair.
+struct PairForecast {
+  std::string environment, material;
+  std::uint64_t images = 0, made = 0;
+  double spp = 0;               ///< mean
+  double error = 0;             ///< RMS relative error; 0 where no probe could tell
+  double seconds_an_image = 0;  ///< mean, without its scene
+};
+
+struct Forecast {
+  Interval seconds;
+  Interval bytes;  ///< new in the store; files in the dataset's folder are links to it
+  std::map<std::string, double> bytes_by_kind;
+  std::vector<PairForecast> pairs;
+};
+
+/// Pairs that were probed, with the work there is for them.
+struct ProbedWork {
+  PairWork work;
+  std::vector<Probe> probes;  ///< at least one
+};
+/// Pairs without a probe (none of their images can be read) have no work either.
+std::vector<ProbedWork> join(const std::vector<PairWork>& work, const Calibration& calibration);
+
+/// Error of an image against samples: c n^slope, the slope that of all its pair's probes.
+struct ErrorLaw {
+  double at_one = 0, slope = -0.5;  ///< at_one = 0: a picture without noise
+  double error(double spp) const;
+  /// At least 1.
+  double spp_for(double error) const;
+};
+/// One for each probe that knows its errors; others get none.
+std::vector<std::optional<ErrorLaw>> error_laws(const std::vector<Probe>& probes);
+
+/// Time and disk of the work. The interval holds the scatter of the probes (Student's t, pooled
+/// over pairs, with the finite number of images taken into account) and k_drift, by which a device
+/// is slower or faster from one minute to another.
+Forecast forecast(const std::vector<ProbedWork>& work, const Samples& samples);
+inline constexpr double k_drift = 0.08;
+
+/// The least error that can be had within `seconds`, where every picture gets the same error; low
+/// and high are what the ends of the time's interval buy. Nothing where one sample a pixel takes
+/// longer, or where no image's error is known.
+std::optional<Interval> error_for(const std::vector<ProbedWork>& work, double seconds);
+
+/// "8h", "90m", "45s", "1h30m", "2.5h" in seconds. Nothing for any other text or 0.
+std::optional<double> parse_duration(const std::string& text);
+
+}  // namespace ds

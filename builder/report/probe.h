@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/build/plan.h"
+#include "builder/build/renderer.h"
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ds {
+
+/// A file's size at the probe's fewer and at its more samples.
+struct ProbedSize {
+  double low = 0, high = 0;
+};
+
+/// What making one image was measured to take, with few samples.
+struct Probe {
+  int low_spp = 0, high_spp = 0;
+  double scene_seconds = 0;   ///< once for a scene: reading, tree, upload
+  double image_seconds = 0;   ///< all else that does not grow with samples: mask, encoding, disk
+  double sample_seconds = 0;  ///< a sample of every pixel
+  std::optional<double> low_error, high_error;  ///< Film::relative_error
+  std::map<std::string, ProbedSize> bytes;      ///< by kind of product
+};
+
+/// Who looks on while probes are made.
+struct ProbeWatch {
+  std::function<void(const std::string&)> told;  ///< hears what is made next
+  std::function<double()> now;                   ///< seconds; wall_clock but in tests
+  const std::atomic<bool>& stop;
+};
+double wall_clock();
+
+/// The samples a probe takes: few enough that a probe is short, and enough that its error is known.
+struct ProbeSamples {
+  int low = 4, high = 16;
+};
+ProbeSamples probe_samples(const EngineSettings& engine);
+
+/// Makes images in a folder of their own as a build would, forced, and measures what it takes.
+/// An image whose scene is that of the one before tells nothing of loading it.
+/// `folder` must be on the file system that the dataset is to be on for its writing to count; it is
+/// filled and may be removed afterwards. `images` are of `recipe`. Throws what making them throws.
+std::vector<Probe> probe_images(const Recipe& recipe, Inputs& inputs,
+                                const std::vector<ImageSpec>& images, Renderer& renderer,
+                                const std::filesystem::path& folder, const ProbeWatch& watch);
+
+/// The images that stand for each environment and material: those whose ids have the least hashes,
+/// of different models where there are, at most three of a pair and about eighteen in all, at least
+/// one of each pair. Ordered by environment, then material.
+struct PairImages {
+  std::string environment, material;
+  std::vector<ImageSpec> images;
+};
+std::vector<PairImages> images_to_probe(const std::vector<ImageSpec>& images);
+
+}  // namespace ds

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What plan foretells; that it is right is measured by ci/forecast, since a shared machine makes any one time wrong."""
+import os
+
+from harness import IMAGES, TinyCase, main
+
+
+class ForecastTest(TinyCase):
+    def plan(self, *arguments, code=0):
+        environment = dict(os.environ, XDG_CACHE_HOME=str(self.folder / "cache"))
+        run = self.run_it("plan", self.recipe, "-o", self.out, *arguments, env=environment)
+        self.assertEqual(run.code, code, run)
+        return run
+
+    def forecast(self, *arguments, code=0):
+        return self.plan(*arguments, "--json", code=code).json["forecast"]
+
+    def test_time_of_what_is_stale(self):
+        told = self.forecast("--time")
+        self.assertGreater(told["seconds"]["value"], 0)
+        self.assertLess(told["seconds"]["low"], told["seconds"]["high"])
+        self.assertEqual(sum(pair["made"] for pair in told["pairs"]), IMAGES)
+        self.assertEqual(set(told["bytes_by_kind"]), {"film", "image", "mask"})
+        self.assertGreater(told["measured"], 0)
+        self.assertFalse(self.out.exists(), "plan makes no dataset")
+        self.assertEqual(self.forecast("--time")["measured"], 0, "the calibration is kept")
+        self.build()
+        done = self.forecast("--time")
+        self.assertEqual(done["seconds"]["value"], 0)
+        self.assertEqual(done["bytes"]["value"], 0)
+
+    def test_disk_is_what_a_build_writes(self):
+        told = self.forecast("--time", "--set", "engine.spp=16")
+        self.build("--set", "engine.spp=16")
+        objects = sum(path.stat().st_size for path in (self.out / ".dsbuild/objects").rglob("*") if path.is_file())
+        # Every image of the tiny dataset is near another that was probed; equal files are stored once.
+        self.assertAlmostEqual(told["bytes"]["value"] / objects, 1, delta=0.25)
+
+    def test_a_smaller_error_takes_longer_and_a_budget_buys_it_back(self):
+        near, far = self.forecast("--error", "0.01"), self.forecast("--error", "0.1")
+        self.assertGreater(near["seconds"]["value"], far["seconds"]["value"])
+        for pair in near["pairs"]:
+            if pair["spp"] > 1:
+                self.assertAlmostEqual(pair["error"], 0.01, delta=1e-6)
+        bought = self.forecast("--budget", f"{near['seconds']['value']:.6f}s")
+        self.assertAlmostEqual(bought["error"]["value"], 0.01, delta=0.0005)
+
+    def test_text(self):
+        out = self.plan("--error", "0.05").out
+        self.assertIn("every picture to an error of 5 %", out)
+        self.assertRegex(out, r"time about \d+:\d\d \(\d+:\d\d to \d+:\d\d\)")
+        self.assertRegex(out, r"disk [\d.]+ kB")
+        self.assertRegex(self.plan("--budget", "1h").out, r"the budget buys an error of [\d.e-]+ % \(")
+
+    def test_a_budget_that_buys_nothing(self):
+        run = self.plan("--budget", "0.000001s", code=1)
+        self.assertIn("no error can be had for this budget", run.out)
+
+
+if __name__ == "__main__":
+    main()
