@@ -151,6 +151,37 @@ TEST(InfiniteLight, LooksUpTheTexelsWhereTheSceneSays) {
     }
 }
 
+TEST(InfiniteLight, KeepsTexelsInOneWordWhereThatIsExact) {
+  // Mantissas of 8 bits under a common exponent, over the range of .hdr files; black too.
+  Image image;
+  image.file = "words";
+  image.width = 4;
+  image.height = 2;
+  image.rgb = {255, 128, 1,       0,        0, 0,        0x1.06p-10f, 0,  0,   0.75f, 0.5f, 0.25f,
+               0,   0,   0x1p20f, 0x1p-20f, 0, 0x1p-26f, 3,           17, 200, 42,    7,    0.25f};
+  const auto words_of = [](const Image& of) {
+    const Scene scene = image_scene(of, Mat4{});
+    const PackedScene packed =
+        pack_scene(scene, features_of(scene, Camera{}), 1.0f, BvhQuality::low);
+    return packed.lights.words()[PackedLight::at + infinite_shared_exponent];
+  };
+  ASSERT_EQ(words_of(image), 1u);
+  // One more bit in one channel of one texel, and all are kept as floats.
+  Image finer = image;
+  finer.rgb[0] = 255.5f;
+  ASSERT_EQ(words_of(finer), 0u);
+  const PackedLight light(image_scene(image, Mat4{}));
+  const LightTables tables = light.tables();
+  DS_GLOBAL float* p = tables.lights + PackedLight::at;
+  DS_GLOBAL float* texels = tables.tables + as_uint(p[infinite_texels]);
+  for (std::size_t i = 0; i < 8; ++i) {
+    const real3 texel = infinite_texel(texels, true, static_cast<uint>(i));
+    EXPECT_EQ(texel.x, image.rgb[3 * i]) << i;
+    EXPECT_EQ(texel.y, image.rgb[3 * i + 1]) << i;
+    EXPECT_EQ(texel.z, image.rgb[3 * i + 2]) << i;
+  }
+}
+
 TEST(InfiniteLight, HasNoSeam) {
   const PackedLight light(image_scene(pictures::small_sky(), Mat4{}));
   for (double z = -0.99; z < 1; z += 0.03) {

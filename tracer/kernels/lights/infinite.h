@@ -12,15 +12,19 @@
 enum {
   infinite_width = 0,  ///< texels, bits of an unsigned number
   infinite_height = 1,
-  infinite_texels = 2,  ///< offset in tables: 3 floats a texel, row 0 at the pole +z of light space
-  infinite_rows = 3,    ///< offset in tables: height + 1 cumulative row probabilities
-  infinite_columns = 4,  ///< offset in tables: for each row, cumulative column probabilities,
-                         ///< filled up with 1 to whole blocks of k_column_block
-  infinite_blocks = 15,  ///< offset in tables: for each row, the last entry of each block
-  k_column_block = 16,   ///< entries: one cache line
-  infinite_densities =
-      5,  ///< offset in tables: for each cell, its pdf over (azimuth, polar angle), per radian^2
-  infinite_to_light = 6,  ///< 9: rotation, row-major, world to light space
+  infinite_texels = 2,  ///< offset in tables of the texels, row 0 at the pole +z of light space
+  infinite_shared_exponent = 3,  ///< 1: a texel is one word, mantissas of r, g, b from the lowest
+                                 ///< byte up, then the exponent of their common scale as a float's;
+                                 ///< 0: it is 3 floats
+  infinite_color = 4,            ///< 3: factor of all texels
+  infinite_rows = 7,             ///< offset in tables: height + 1 cumulative row probabilities
+  infinite_row_densities = 8,    ///< offset in tables: for each row, a cell's pdf over (azimuth,
+                                 ///< polar angle), per radian^2, by its mean luminance
+  infinite_columns = 9,          ///< offset in tables: for each row, cumulative column
+                                 ///< probabilities, filled up with 1 to whole blocks
+  infinite_blocks = 10,          ///< offset in tables: for each row, the last entry of each block
+  infinite_to_light = 11,        ///< 9: rotation, row-major, world to light space
+  k_column_block = 16,           ///< entries of a block: one cache line
 };
 
 /// A direction of light space (+z up) in the image; the middle column looks along +x, columns to
@@ -46,17 +50,40 @@ DS_FN real3 lat_long_direction(real column, real row, float width, float height,
   return vec(polar.sin * azimuth.cos, polar.sin * azimuth.sin, polar.cos);
 }
 
+DS_FN real3 infinite_texel(DS_GLOBAL float* texels, bool shared_exponent, natural i) {
+  if (!shared_exponent) return load3(texels, i * 3u);
+  const natural word = load_natural(texels, i);
+  return scale(vec(to_real(word & 255u), to_real((word >> 8) & 255u), to_real((word >> 16) & 255u)),
+               real_of((word >> 24) << 23));
+}
+
+/// What a cell holds at a point of it.
+typedef struct {
+  real3 radiance;
+  real density;  ///< of sampling it: per radian of azimuth and of polar angle
+} CellPoint;
+
 /// Bilinear radiance within cell (column, row) at fractions fx, fy of it.
-DS_FN real3 infinite_radiance(DS_GLOBAL float* texels, uint width, uint height, natural column,
-                              natural row, real fx, real fy) {
+DS_FN CellPoint infinite_cell(LightTables t, DS_GLOBAL float* p, natural column, natural row,
+                              real fx, real fy) {
+  const uint width = as_uint(p[infinite_width]);
+  const uint height = as_uint(p[infinite_height]);
+  const bool shared = as_uint(p[infinite_shared_exponent]) != 0u;
+  DS_GLOBAL float* texels = t.tables + as_uint(p[infinite_texels]);
   const natural left = choose_natural(column == 0u, (natural)(width - 1u), column - 1u);
-  const natural above = choose_natural(row == 0u, (natural)(0u), row - 1u);
-  const natural below = choose_natural(row >= height, (natural)(height - 1u), row);
-  const real3 top = lerp3(load3(texels, (above * width + left) * 3u),
-                          load3(texels, (above * width + column) * 3u), fx);
-  const real3 bottom = lerp3(load3(texels, (below * width + left) * 3u),
-                             load3(texels, (below * width + column) * 3u), fx);
-  return lerp3(top, bottom, fy);
+  const natural above = choose_natural(row == 0u, (natural)(0u), row - 1u) * width;
+  const natural below = choose_natural(row >= height, (natural)(height - 1u), row) * width;
+  const real3 above_left = infinite_texel(texels, shared, above + left);
+  const real3 above_right = infinite_texel(texels, shared, above + column);
+  const real3 below_left = infinite_texel(texels, shared, below + left);
+  const real3 below_right = infinite_texel(texels, shared, below + column);
+  const real3 sum = add(add(above_left, above_right), add(below_left, below_right));
+  CellPoint c;
+  c.radiance =
+      mul(lerp3(lerp3(above_left, above_right, fx), lerp3(below_left, below_right, fx), fy),
+          uniform3(p + infinite_color));
+  c.density = luminance(sum) * 0.25f * load(t.tables + as_uint(p[infinite_row_densities]), row);
+  return c;
 }
 
 DS_FN real3 infinite_escape(LightTables t, uint at, real3 direction, real* pdf) {
@@ -73,10 +100,9 @@ DS_FN real3 infinite_escape(LightTables t, uint at, real3 direction, real* pdf) 
   const natural whole_x = to_natural(x);
   const natural column = choose_natural(whole_x >= width, whole_x - width, whole_x);
   const natural row = to_natural(lesser(y, (real)((float)height + 0.49f)));
-  const real density = load(t.tables + as_uint(p[infinite_densities]), row * width + column);
-  *pdf = density / greater(where.sine, (real)(1e-6f));
-  return infinite_radiance(t.tables + as_uint(p[infinite_texels]), width, height, column, row,
-                           x - floor(x), y - floor(y));
+  const CellPoint cell = infinite_cell(t, p, column, row, x - floor(x), y - floor(y));
+  *pdf = cell.density / greater(where.sine, (real)(1e-6f));
+  return cell.radiance;
 }
 
 DS_FN LightSample infinite_sample(LightTables t, uint at, real3 from, real2 u) {
@@ -111,9 +137,8 @@ DS_FN LightSample infinite_sample(LightTables t, uint at, real3 from, real2 u) {
   LightSample s = no_light();
   s.wi = unit(
       add_scaled(add_scaled(scale(uniform3(m), d.x), uniform3(m + 3), d.y), uniform3(m + 6), d.z));
-  s.radiance =
-      infinite_radiance(t.tables + as_uint(p[infinite_texels]), width, height, column, row, fx, fy);
-  const real density = load(t.tables + as_uint(p[infinite_densities]), row * width + column);
-  s.pdf = choose(sine > 1e-6f, density / greater(sine, (real)(1e-6f)), (real)(0.0f));
+  const CellPoint cell = infinite_cell(t, p, column, row, fx, fy);
+  s.radiance = cell.radiance;
+  s.pdf = choose(sine > 1e-6f, cell.density / greater(sine, (real)(1e-6f)), (real)(0.0f));
   return s;
 }

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/device/pack_rows.h"
+#include "tracer/kernels/all_nodes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <optional>
+
+namespace ds {
+namespace {
+
+constexpr double k_pi = std::numbers::pi;
+
+/// sin of the polar angle at row y of an image of this height, by the kernels' own polynomial: the
+/// same on every machine.
+double polar_sine(double y, int height) {
+  return double{kernels::sin_cos_turns(static_cast<float>(y / (2.0 * height))).sin};
+}
+
+/// Luminance of a texel.
+double texel_luminance(const Image& image, int column, int row) {
+  const std::size_t at =
+      3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
+           static_cast<std::size_t>(column));
+  return luminance({image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]});
+}
+
+/// Weights of the cells of lights/infinite.h, row by row, and the sine that stands for each row.
+struct Cells {
+  std::vector<double> weights;
+  std::vector<double> sines;
+  double total = 0;
+};
+
+Cells cells_of(const Image& image) {
+  Cells cells;
+  const int w = image.width;
+  const int h = image.height;
+  for (int row = 0; row <= h; ++row) {
+    const int above = std::max(row - 1, 0);
+    const int below = std::min(row, h - 1);
+    const double low = std::max(row - 0.5, 0.0);
+    const double high = std::min(row + 0.5, double(h));
+    cells.sines.push_back(polar_sine(0.5 * (low + high), h));
+    for (int column = 0; column < w; ++column) {
+      const int left = column == 0 ? w - 1 : column - 1;
+      const double mean =
+          0.25 * (texel_luminance(image, left, above) + texel_luminance(image, column, above) +
+                  texel_luminance(image, left, below) + texel_luminance(image, column, below));
+      cells.weights.push_back(mean * cells.sines.back() * (high - low));
+      cells.total += cells.weights.back();
+    }
+  }
+  return cells;
+}
+
+/// Where an image's texels stand in tables: all images come first, one behind the other
+/// (scene_pack.cc).
+std::uint32_t texel_offset(const Scene& scene, int image) {
+  std::size_t offset = 0;
+  for (int i = 0; i < image; ++i)
+    offset += scene.images[static_cast<std::size_t>(i)].rgb.size();
+  return static_cast<std::uint32_t>(offset);
+}
+
+/// The texel in one word (infinite_shared_exponent), where it fits exactly.
+std::optional<std::uint32_t> shared_exponent_word(const float* rgb) {
+  const float greatest = std::max({rgb[0], rgb[1], rgb[2]});
+  if (greatest == 0 && rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0) return 0u;
+  if (!(greatest > 0) || !std::isfinite(greatest)) return std::nullopt;
+  const int exponent = std::ilogb(greatest) - 7;  // the greatest is 128 to 255 of its steps
+  if (exponent + 127 < 1) return std::nullopt;
+  std::uint32_t word = static_cast<std::uint32_t>(exponent + 127) << 24;
+  for (unsigned c = 0; c < 3; ++c) {
+    const float steps = std::ldexp(rgb[c], -exponent);
+    if (!(steps >= 0 && steps <= 255 && steps == std::floor(steps))) return std::nullopt;
+    word |= static_cast<std::uint32_t>(steps) << (8 * c);
+  }
+  return word;
+}
+
+/// Offset of the image's texels as words, or nothing where one does not fit.
+std::optional<std::uint32_t> add_shared_exponents(const Image& image, Words& tables) {
+  std::vector<std::uint32_t> words;
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
+    const std::optional<std::uint32_t> word = shared_exponent_word(&image.rgb[i]);
+    if (!word) return std::nullopt;
+    words.push_back(*word);
+  }
+  const std::uint32_t offset = tables.offset();
+  for (const std::uint32_t word : words)
+    tables.add(word);
+  return offset;
+}
+
+}  // namespace
+
+LightRow infinite_row(const Scene& scene, const Light& light, double scene_radius, Words& tables) {
+  const Image& image = scene.images[static_cast<std::size_t>(light.image)];
+  const Cells cells = cells_of(image);
+  const auto w = static_cast<std::size_t>(image.width);
+  const auto h = static_cast<std::size_t>(image.height);
+  const auto row_weights = [&](std::size_t r) {
+    const auto begin = cells.weights.begin() + static_cast<std::ptrdiff_t>(r * w);
+    return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(w));
+  };
+  LightRow result{"infinite", 0, {}};
+  Words& p = result.parameters;
+  p.add(static_cast<std::uint32_t>(image.width));
+  p.add(static_cast<std::uint32_t>(image.height));
+  const std::optional<std::uint32_t> words = add_shared_exponents(image, tables);
+  p.add(words ? *words : texel_offset(scene, light.image));
+  p.add(words ? std::uint32_t{1} : std::uint32_t{0});
+  p.add(light.color);
+  p.add(tables.offset());
+  std::vector<double> rows;
+  for (std::size_t r = 0; r <= h; ++r) {
+    const std::vector<double> row = row_weights(r);
+    rows.push_back(std::accumulate(row.begin(), row.end(), 0.0));
+  }
+  add_cumulative(rows, tables);
+  const double cell_angle = (2 * k_pi / image.width) * (k_pi / image.height);
+  p.add(tables.offset());
+  for (const double sine : cells.sines)
+    tables.add(cells.total > 0 ? static_cast<float>(sine / (cells.total * cell_angle)) : 0.0f);
+  constexpr std::size_t block = kernels::k_column_block;
+  const std::size_t blocks = (w + block - 1) / block;
+  const std::uint32_t columns = tables.offset();
+  p.add(columns);
+  for (std::size_t r = 0; r <= h; ++r) {
+    std::vector<double> row = row_weights(r);
+    row.resize(blocks * block, 0.0);
+    add_cumulative(row, tables);
+  }
+  p.add(tables.offset());
+  for (std::size_t i = block - 1; i < (h + 1) * blocks * block; i += block)
+    tables.add(std::uint32_t{tables.words()[columns + i]});
+  for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t column = 0; column < 3; ++column)
+      p.add(static_cast<float>(light.light_to_world.m[column * 4 + row]));
+  // What falls on a disc of the scene's radius: power, as for the others.
+  result.weight =
+      cells.total * cell_angle * luminance(light.color) * k_pi * scene_radius * scene_radius;
+  return result;
+}
+
+}  // namespace ds

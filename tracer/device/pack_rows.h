@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows of the table of lights in the making: what pack_lights.cc and pack_infinite.cc share.
+#pragma once
+
+#include "tracer/device/scene_pack.h"
+
+#include <string_view>
+#include <vector>
+
+namespace ds {
+
+/// One light's row.
+struct LightRow {
+  std::string_view kind;
+  double weight = 0;  ///< share of next-event estimation before normalising; 0: never sampled
+  Words parameters;
+};
+
+/// Rec.709 luminance.
+double luminance(Vec3 color);
+
+/// Appends cumulative shares as floats; the last of positive share and all behind it are exactly 1.
+void add_cumulative(const std::vector<double>& weights, Words& tables);
+
+/// Row and tables of a lat-long image at infinity (kernels/lights/infinite.h). Texels that a shared
+/// exponent of 8 bits and mantissas of 8 bits hold exactly, as those of .hdr files are, are kept in
+/// one word each.
+LightRow infinite_row(const Scene& scene, const Light& light, double scene_radius, Words& tables);
+
+}  // namespace ds
