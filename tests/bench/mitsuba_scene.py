@@ -105,9 +105,9 @@ def sensor(mi, exported: dict, width: int, height: int) -> dict:
 
 
 def integrator(engine: dict) -> dict:
-    """Mitsuba has one depth for all kinds of bounces and counts edges, not vertices. No material of these scenes is
-    specular, and the lesser of the two depths that are left makes Mitsuba's paths as long or shorter."""
-    depth = min(engine["depth_total"], engine["depth_diffuse"], engine["depth_glossy"]) + 1
+    """Mitsuba has one depth for all kinds of bounces and counts edges, not vertices: as many as make the longest path
+    have as many light samples and the same last ray. No material of these scenes is specular."""
+    depth = min(engine["depth_total"] + 1, engine["depth_diffuse"] + 2, engine["depth_glossy"] + 2)
     return {"type": "path", "max_depth": depth, "rr_depth": engine["roulette_depth"]}
 
 
