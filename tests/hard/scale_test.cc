@@ -130,6 +130,20 @@ TEST(Scale, DecimalScalesAndPlacesChangeNothingButRounding) {
   }
 }
 
+TEST(Scale, AHundredTimesItsSizeFromTheOriginChangesLittle) {
+  // A scene of a kilometre at 1e5 m, where floats are 8 mm apart: a hundred-thousandth of it.
+  const Picture original = pictures::all_effects()[0];
+  const Film usual = hard::trace(original, {});
+  const Picture far = moved(scaled(original, 1e3f), {1e5f, -1e5f, 1e5f});
+  hard::everywhere(far, [&](const Film& film) {
+    EXPECT_NEAR(hard::mean_of(film), hard::mean_of(usual), 0.01 * hard::mean_of(usual));
+    std::size_t differ = 0;
+    for (std::size_t i = 0; i < film.rgb.size(); ++i)
+      differ += std::fabs(film.rgb[i] - usual.rgb[i]) > 0.02f * (film.rgb[i] + usual.rgb[i]);
+    EXPECT_LT(differ, film.rgb.size() / 20);
+  });
+}
+
 TEST(Scale, SingleTrianglesOfAnySizeAndPlaceReflectOnce) {
   // As pbrt's Triangle.Reintersect: coordinates of 1e-8 .. 1e8, all three axes of their own size.
   std::mt19937 random(3);
