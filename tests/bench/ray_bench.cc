@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Closest hits a second: tracer/kernels/rays.cl on the OpenCL device beside Embree's rtcIntersect1,
+// Closest hits a second: trace_batches of tracer/kernels/rays.cl on the OpenCL device, sixteen rays
+// by turns as the path tracer has them in flight, beside Embree's rtcIntersect1,
 // the same rays in the same run, turn by turn.
 //
 //   ray_bench [REPEATS [CAMERA_SIZE]]
@@ -36,6 +37,8 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t k_local_size = 8;
+/// Rays of a batch: on a CPU the path tracer has this many in flight.
+constexpr std::size_t k_lanes = 16;
 /// Each timing traces its rays this often, so that it lasts a tenth of a second and more.
 constexpr int k_rounds = 10;
 
@@ -119,35 +122,39 @@ class EmbreeTracer {
   RTCScene scene_ = nullptr;
 };
 
-/// dsbuild's side: the kernel trace_nearest over rays in device memory.
+/// dsbuild's side: the kernel trace_batches over rays in device memory.
 class KernelTracer {
  public:
   explicit KernelTracer(const std::vector<Corners>& triangles) : device_("") {
     const Bvh bvh = build_bvh(triangles);
     nodes_ = device_.upload(bvh.nodes);
     leaves_ = device_.upload(bvh.leaves);
-    kernel_ =
-        device_.kernel(device_.build(rays_program_text(), k_strict_options, {}), "trace_nearest");
+    kernel_ = device_.kernel(
+        device_.build(rays_program_text(),
+                      fmt::format("{} -DDS_LANES={}", k_strict_options, k_lanes), {}),
+        "trace_batches");
   }
 
   const DeviceInfo& info() const { return device_.info(); }
 
   void set_rays(const std::vector<RayWords>& rays) {
     count_ = rays.size();
-    hits_ = device_.make_buffer(count_ * 4 * sizeof(float));
+    hits_ = device_.make_buffer(count_ * 2 * sizeof(float));
     kernel_.set(0, nodes_);
     kernel_.set(1, leaves_);
     kernel_.set(2, device_.upload(rays));
-    kernel_.set(3, hits_);
+    kernel_.set(3, std::uint32_t{0});
+    kernel_.set(4, hits_);
+    kernel_.set(5, hits_);
   }
-  void trace() const { device_.run(kernel_, 0, count_, k_local_size); }
+  void trace() const { device_.run(kernel_, 0, count_ / k_lanes, k_local_size); }
 
   std::vector<Met> met() const {
-    std::vector<std::array<std::uint32_t, 4>> words(count_);
+    std::vector<std::array<std::uint32_t, 2>> words(count_);
     device_.read(hits_, std::as_writable_bytes(std::span(words)));
     std::vector<Met> result;
     for (const auto& w : words)
-      result.push_back({std::bit_cast<float>(w[0]), w[3], w[3] != ~0u});
+      result.push_back({std::bit_cast<float>(w[0]), w[1], w[1] != ~0u});
     return result;
   }
 
@@ -168,7 +175,7 @@ double mrays_per_second(std::size_t rays, const std::function<void()>& trace) {
 
 json compare(KernelTracer& kernel, const EmbreeTracer& embree, std::vector<RayWords> rays,
              int repeats) {
-  rays.resize(rays.size() / k_local_size * k_local_size);
+  rays.resize(rays.size() / (k_local_size * k_lanes) * (k_local_size * k_lanes));
   std::vector<Met> met(rays.size());
   kernel.set_rays(rays);
   kernel.trace();

@@ -188,6 +188,33 @@ TEST(AnyHit, IsThatANearestHitExists) {
   EXPECT_GT(met, 10000u);
 }
 
+/// Rays of every kind, some of them strange, in batches of every width: single rays' very bits.
+TEST(Batches, AnswerAsSingleRaysDo) {
+  const std::vector<Corners> corners = corners_of(shipped_mesh());
+  std::vector<TestRay> all = random_rays(20000, 0.16f, 13);
+  const Tree tree(corners);
+  const std::vector<TestHit> far = tree.nearest(all);
+  const std::array<float, 5> odd = {k_nan, k_infinity, 0.0f, -1.0f, 1e-38f};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (far[i].met() && i % 3 == 0)
+      all[i].t_max = i % 2 == 0 ? far[i].t : std::nextafter(far[i].t, 0.0f);
+    if (i % 101 == 0) (i % 2 == 0 ? all[i].origin.y : all[i].direction.z) = odd[i / 101 % 5];
+    if (i % 103 == 0) all[i].t_max = odd[i / 103 % 5];
+  }
+  const std::vector<TestHit> nearest = tree.nearest(all);
+  const std::vector<std::uint32_t> any = tree.any(all);
+  for (const int lanes : {1, 4, 8, 16}) {
+    const Tree::Batched batched = tree.batched(all, lanes);
+    EXPECT_EQ(batched.any, any) << lanes;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      ASSERT_EQ(batched.nearest[i].id, nearest[i].id) << lanes << " lanes, ray " << i;
+      if (nearest[i].met()) {
+        ASSERT_EQ(batched.nearest[i].t, nearest[i].t) << lanes << " lanes, ray " << i;
+      }
+    }
+  }
+}
+
 /// Rays from inside a closed mesh at its vertices, edges' points and at random: all must hit it.
 std::size_t leaks(const Mesh& mesh, Vec3 centre, float radius, std::size_t count) {
   std::mt19937 random(6);

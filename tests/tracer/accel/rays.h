@@ -33,6 +33,13 @@ class Tree {
   std::vector<TestHit> nearest(std::span<const TestRay> rays) const;
   std::vector<std::uint32_t> any(std::span<const TestRay> rays) const;
 
+  /// The same rays as the path tracer asks, `lanes` of them side by side (weights are left 0).
+  struct Batched {
+    std::vector<TestHit> nearest;
+    std::vector<std::uint32_t> any;
+  };
+  Batched batched(std::span<const TestRay> rays, int lanes) const;
+
  private:
   Buffer upload_rays(std::span<const TestRay> rays, std::size_t padded) const;
   Device device_;
