@@ -57,7 +57,7 @@ struct TraceProgress {
 struct TracerOptions {
   std::string
       device;     ///< "" = first CPU device, else first of any; a number or part of a name selects
-  int lanes = 0;  ///< N: 0 = 8 on CPUs, 1 on GPUs; 1, 4, 8, 16
+  int lanes = 0;  ///< N: 0 = 16 on CPUs, 1 on GPUs; 1, 4, 8, 16
   int work_group_size = 0;    ///< 0 = 8
   bool full_program = false;  ///< compile every effect in, used or not
   bool high_quality_bvh = false;

@@ -65,7 +65,7 @@ Film film_from_sums(const std::vector<float>& sums, int width, int height, int s
 
 struct Tracer::State {
   explicit State(const TracerOptions& o) : options(o), device(o.device) {
-    lanes = options.lanes != 0 ? options.lanes : device.info().is_cpu ? 8 : 1;
+    lanes = options.lanes != 0 ? options.lanes : device.info().is_cpu ? 16 : 1;
     local_size =
         options.work_group_size != 0 ? static_cast<std::size_t>(options.work_group_size) : 8;
   }
