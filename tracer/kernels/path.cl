@@ -88,17 +88,26 @@ DS_FN void start_paths(Paths* paths, mask start, const Pixels* pixels, const Sce
   paths->alive = paths->alive | start;
 }
 
+/// Words of a triangle's row that this scene asks for.
+#if defined(DS_UVS)
+enum { k_hit_words = k_triangle_uvs + 6 };
+#elif defined(DS_MESH_LIGHTS) || defined(DS_CAMERA_INVISIBLE)
+enum { k_hit_words = k_triangle_uvs };
+#else
+enum { k_hit_words = k_triangle_material + 1 };
+#endif
+
 /// The rows of the triangles that were hit, lane by lane; lanes are taken apart only here and in
 /// batch.cl.
 typedef struct {
-  float word[k_triangle_words][DS_LANES] __attribute__((aligned(64)));
+  float word[k_hit_words][DS_LANES] __attribute__((aligned(64)));
 } LaneHits;
 
 DS_FN void load_triangles(DS_GLOBAL float* triangles, const BatchHits* found, LaneHits* hits) {
   for (int lane = 0; lane < DS_LANES; ++lane) {
     const uint id = found->id[lane];
     DS_GLOBAL float* triangle = triangles + (id == k_none ? 0u : id) * k_triangle_words;
-    for (int i = 0; i < k_triangle_words; ++i)
+    for (int i = 0; i < k_hit_words; ++i)
       hits->word[i][lane] = triangle[i];
   }
 }
@@ -137,10 +146,14 @@ DS_FN Surface surface_of(const LaneHits* hits, real3 origin, real3 direction) {
   // Opposite corner normals can cancel; the triangle's own normal stands in.
   const real3 smooth = choose(dot(interpolated, interpolated) > 1e-6f, unit(interpolated), own);
   s.shading = facing_normal(scale(smooth, side), wo);
+#ifdef DS_UVS
   s.u = fma(b0, hit_word(hits, k_triangle_uvs),
             fma(b1, hit_word(hits, k_triangle_uvs + 2), b2 * hit_word(hits, k_triangle_uvs + 4)));
   s.v = fma(b0, hit_word(hits, k_triangle_uvs + 1),
             fma(b1, hit_word(hits, k_triangle_uvs + 3), b2 * hit_word(hits, k_triangle_uvs + 5)));
+#else
+  s.u = s.v = (real)(0.0f);
+#endif
   return s;
 }
 
@@ -308,7 +321,7 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
   next.t_max = (real)(1e30f);
   next.wanted = paths->alive;
   BatchHits found;
-  trace_lanes(t->nodes, t->leaves, &next, &paths->shadow, &found);
+  trace_lanes(t->nodes, t->leaves, t->triangles, &next, &paths->shadow, &found);
   add_direct(paths, sums, &found);
   mask hit = paths->alive & (*(const natural*)found.id != k_none);
   const mask escapes = paths->alive & !hit;

@@ -55,15 +55,15 @@ enum {
   k_leaf_vectors = 10,
   k_leaf_ids = 9,
 
-  // A triangle's row in `triangles`.
+  // A triangle's row in `triangles`, two cache lines; what every program reads stands first.
   k_triangle_positions = 0,  ///< 9
   k_triangle_normals = 9,    ///< 9, unit
-  k_triangle_uvs = 18,       ///< 6
-  k_triangle_material = 24,  ///< row of materials
-  k_triangle_light = 25,     ///< row of lights, or k_none
-  k_triangle_object = 26,    ///< object id
-  k_triangle_flags = 27,     ///< k_flag_*
-  k_triangle_words = 28,
+  k_triangle_material = 18,  ///< row of materials
+  k_triangle_light = 19,     ///< row of lights, or k_none
+  k_triangle_object = 20,    ///< object id
+  k_triangle_flags = 21,     ///< k_flag_*
+  k_triangle_uvs = 22,       ///< 6
+  k_triangle_words = 32,
   k_flag_camera_invisible = 1,
 
   // A row of materials: a head, then the inputs.
