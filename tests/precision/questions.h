@@ -46,7 +46,7 @@ struct LightAnswer {
 };
 
 struct CameraQuestion {
-  std::array<float, 32> view{};  ///< the words of ViewData
+  std::array<float, 31> view{};  ///< the words of ViewData
   const std::vector<float>* filter = nullptr;
   std::array<float, 2> pixel{};  ///< its centre
   std::array<float, 2> filter_numbers{}, lens_numbers{};
@@ -58,7 +58,7 @@ struct CameraAnswer {
 
 /// A sample of a pixel that looks straight at an image sky.
 struct SkyQuestion {
-  std::array<float, 32> view{};  ///< the words of ViewData
+  std::array<float, 31> view{};  ///< the words of ViewData
   const std::vector<float>* filter = nullptr;
   const std::vector<float>* lights = nullptr;
   const std::vector<float>* tables = nullptr;

@@ -202,7 +202,6 @@ std::string path_program_text(const Features& f) {
   if (f.lights.size() > 1 || (f.lights.size() == 1 && f.lights[0] != "constant_infinite"))
     head += "#define DS_LIGHTS_SAMPLED\n";
   if (Features::number(f.lights, "mesh") >= 0) head += "#define DS_MESH_LIGHTS\n";
-  if (Features::number(f.textures, "imagemap") >= 0) head += "#define DS_UVS\n";
   if (f.mix) head += fmt::format("#define DS_MIX_NUMBER {}\n", f.materials.size());
   if (f.lens) head += "#define DS_LENS\n";
   if (f.camera_invisible) head += "#define DS_CAMERA_INVISIBLE\n";

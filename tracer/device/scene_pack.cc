@@ -40,16 +40,14 @@ void pack_object(const Object& object, std::uint32_t light, Words& out) {
     for (const std::uint32_t i : t)
       out.add(mesh.normals.empty() || mesh.normals[i] == Vec3{} ? face_normal(corners)
                                                                 : mesh.normals[i]);
-    out.add(static_cast<std::uint32_t>(object.material));
-    out.add(light);
-    out.add(object.id);
-    out.add(object.camera_invisible ? std::uint32_t{kernels::k_flag_camera_invisible} : 0u);
     for (const std::uint32_t i : t) {
       out.add(mesh.uvs.empty() ? 0.0f : mesh.uvs[i].x);
       out.add(mesh.uvs.empty() ? 0.0f : mesh.uvs[i].y);
     }
-    out.pad_to((out.offset() + kernels::k_triangle_words - 1) / kernels::k_triangle_words *
-               kernels::k_triangle_words);
+    out.add(static_cast<std::uint32_t>(object.material));
+    out.add(light);
+    out.add(object.id);
+    out.add(object.camera_invisible ? std::uint32_t{kernels::k_flag_camera_invisible} : 0u);
   }
 }
 

@@ -102,8 +102,7 @@ DS_FN real2 hit_weights(real3 origin, real3 direction, real3 p0, real3 p1, real3
 #if DS_LANES == 1
 
 DS_FN void trace_lanes(const __global float8* nodes, const __global float8* leaves,
-                       DS_GLOBAL float* triangles, const LaneRays* nearest, const LaneRays* any,
-                       BatchHits* hits) {
+                       const LaneRays* nearest, const LaneRays* any, BatchHits* hits) {
   const Hit none = {0.0f, 0.0f, 0.0f, k_none};
   const Ray first = {{nearest->origin.x, nearest->origin.y, nearest->origin.z},
                      {nearest->direction.x, nearest->direction.y, nearest->direction.z},
@@ -264,17 +263,8 @@ DS_FN Counts step_nodes(Batch* b, Counts n, const __global float8* nodes) {
   return after;
 }
 
-/// Asks for a triangle's row before shading does: no result depends on it.
-DS_FN void fetch_row(DS_GLOBAL float* triangles, uint id) {
-  if (triangles == 0) return;
-  const ulong row = (ulong)(triangles + (ulong)id * k_triangle_words);
-  __builtin_prefetch((const void*)row);
-  __builtin_prefetch((const void*)(row + 64));
-}
-
 /// Tests the triangles of each ray's leaf. An any-hit ray that meets one is done.
-DS_FN Counts step_leaves(Batch* b, Counts n, const __global float8* leaves,
-                         DS_GLOBAL float* triangles) {
+DS_FN Counts step_leaves(Batch* b, Counts n, const __global float8* leaves) {
   Counts after = n;
   after.at_leaf = 0;
   for (uint i = 0; i < n.at_leaf; ++i) {
@@ -299,7 +289,6 @@ DS_FN Counts step_leaves(Batch* b, Counts n, const __global float8* leaves,
     const bool nearer = met && (t < t_max || (t == t_max && id < b->id[ray]));
     b->t[ray] = nearer ? t : t_max;
     b->id[ray] = nearer ? id : b->id[ray];
-    fetch_row(triangles, id);
     b->climbing[after.climbing] = (uint)ray;
     after.climbing += 1u - (met & (ray >= k_batch_any ? 1u : 0u));
   }
@@ -336,17 +325,16 @@ DS_FN Counts step_climbing(Batch* b, Counts n, const __global float8* nodes) {
   return after;
 }
 
-/// Traces the lanes' wanted rays. `triangles`: their rows, or 0 where none will be read.
+/// Traces the lanes' wanted rays.
 DS_FN void trace_lanes(const __global float8* nodes, const __global float8* leaves,
-                       DS_GLOBAL float* triangles, const LaneRays* nearest, const LaneRays* any,
-                       BatchHits* hits) {
+                       const LaneRays* nearest, const LaneRays* any, BatchHits* hits) {
   Batch b;
   Counts n = {0, 0, 0};
   n.at_node = add_rays(&b, 0, 0, nodes, nearest);
   n.at_node = add_rays(&b, k_batch_any, n.at_node, nodes, any);
   while ((n.at_node | n.at_leaf | n.climbing) != 0) {
     n = step_nodes(&b, n, nodes);
-    n = step_leaves(&b, n, leaves, triangles);
+    n = step_leaves(&b, n, leaves);
     n = step_climbing(&b, n, nodes);
   }
   *(real*)hits->t = *(const real*)&b.t[0];

@@ -43,12 +43,11 @@ typedef struct {
   LightTables lights;
 } SceneTables;
 
-/// Pixels of this work-item: 8x8 tiles, within them blocks of 4x4, so that lanes look at
-/// neighbouring things.
-DS_FN Pixels pixels_of(uint item, const ViewData* view) {
-  const natural i = item * (uint)DS_LANES + DS_LANE_NUMBERS;
-  const natural tile = i >> 6;
-  const natural block = (i >> 4) & 3u;
+/// Pixels of a work-item in its tile: within the tile blocks of 4x4, so that lanes look at
+/// neighbouring things. `first`: place in the tile of lane 0's pixel, 0 .. 63.
+DS_FN Pixels pixels_of(uint tile, uint first, const ViewData* view) {
+  const natural i = first + DS_LANE_NUMBERS;
+  const natural block = i >> 4;
   const natural x = (tile % view->tiles_x) * 8u + (block & 1u) * 4u + (i & 3u);
   const natural y = (tile / view->tiles_x) * 8u + (block >> 1) * 4u + ((i >> 2) & 3u);
   Pixels p;
@@ -88,26 +87,17 @@ DS_FN void start_paths(Paths* paths, mask start, const Pixels* pixels, const Sce
   paths->alive = paths->alive | start;
 }
 
-/// Words of a triangle's row that this scene asks for.
-#if defined(DS_UVS)
-enum { k_hit_words = k_triangle_uvs + 6 };
-#elif defined(DS_MESH_LIGHTS) || defined(DS_CAMERA_INVISIBLE)
-enum { k_hit_words = k_triangle_uvs };
-#else
-enum { k_hit_words = k_triangle_material + 1 };
-#endif
-
 /// The rows of the triangles that were hit, lane by lane; lanes are taken apart only here and in
 /// batch.cl.
 typedef struct {
-  float word[k_hit_words][DS_LANES] __attribute__((aligned(64)));
+  float word[k_triangle_words][DS_LANES] __attribute__((aligned(64)));
 } LaneHits;
 
 DS_FN void load_triangles(DS_GLOBAL float* triangles, const BatchHits* found, LaneHits* hits) {
   for (int lane = 0; lane < DS_LANES; ++lane) {
     const uint id = found->id[lane];
     DS_GLOBAL float* triangle = triangles + (id == k_none ? 0u : id) * k_triangle_words;
-    for (int i = 0; i < k_hit_words; ++i)
+    for (int i = 0; i < k_triangle_words; ++i)
       hits->word[i][lane] = triangle[i];
   }
 }
@@ -146,14 +136,10 @@ DS_FN Surface surface_of(const LaneHits* hits, real3 origin, real3 direction) {
   // Opposite corner normals can cancel; the triangle's own normal stands in.
   const real3 smooth = choose(dot(interpolated, interpolated) > 1e-6f, unit(interpolated), own);
   s.shading = facing_normal(scale(smooth, side), wo);
-#ifdef DS_UVS
   s.u = fma(b0, hit_word(hits, k_triangle_uvs),
             fma(b1, hit_word(hits, k_triangle_uvs + 2), b2 * hit_word(hits, k_triangle_uvs + 4)));
   s.v = fma(b0, hit_word(hits, k_triangle_uvs + 1),
             fma(b1, hit_word(hits, k_triangle_uvs + 3), b2 * hit_word(hits, k_triangle_uvs + 5)));
-#else
-  s.u = s.v = (real)(0.0f);
-#endif
   return s;
 }
 
@@ -236,52 +222,99 @@ DS_FN mask scatter(Paths* paths, mask active, const Surface* s, const MaterialPo
   return active & ends;
 }
 
-/// The pixels' running sums while this work-item works on them.
+/// The pixels' running sums while this work-item works on them. The rare planes (from k_film_nan
+/// on) stay in the film.
+enum { k_sums = k_film_halves + 3 };
 typedef struct {
-  real sum[3], compensation[3];
-  real rejected, halves;
+  real plane[k_sums];
+  __global float* film;
+  natural index;  ///< of the pixels
+  uint stride;    ///< from plane to plane in the film
+  float limit;    ///< ViewData::sample_limit
 } Sums;
 
-DS_FN void load_sums(Sums* sums, const __global float* film, const Pixels* pixels, uint plane) {
-  for (int c = 0; c < 3; ++c) {
-    sums->sum[c] = load(film + (k_film_sum + c) * plane, pixels->index);
-    sums->compensation[c] = load(film + (k_film_compensation + c) * plane, pixels->index);
-  }
-  sums->rejected = load(film + k_film_rejected * plane, pixels->index);
-  sums->halves = load(film + k_film_halves * plane, pixels->index);
+DS_FN void load_sums(Sums* sums, __global float* film, const Pixels* pixels, const ViewData* view) {
+  sums->film = film;
+  sums->index = pixels->index;
+  sums->stride = view->width * view->height;
+  sums->limit = view->sample_limit;
+  for (int i = 0; i < k_sums; ++i)
+    sums->plane[i] = load(film + i * sums->stride, pixels->index);
 }
 
-/// Adds the finished samples in `done`, by number.
-DS_FN void add_samples(Sums* sums, mask done, natural number, real3 radiance) {
-  const real sample[3] = {radiance.x, radiance.y, radiance.z};
-  mask good = done;
-  for (int c = 0; c < 3; ++c)
-    good = good & (sample[c] >= 0.0f) & (sample[c] <= 1e30f);
-  for (int c = 0; c < 3; ++c) {
-    add_compensated(&sums->sum[c], &sums->compensation[c], choose(good, sample[c], (real)(0.0f)));
-  }
-  sums->rejected = sums->rejected + choose(done & !good, (real)(1.0f), (real)(0.0f));
-  const real signed_luminance =
-      choose((number & 1u) == 0u, luminance(radiance), -luminance(radiance));
-  sums->halves = sums->halves + choose(good, signed_luminance, (real)(0.0f));
-}
-
-DS_FN void store_sums(const Sums* sums, __global float* film, const Pixels* pixels, uint plane) {
-  float value[k_film_planes][DS_LANES] __attribute__((aligned(64)));
+DS_FN void store_sums(const Sums* sums, const Pixels* pixels) {
+  float value[k_sums][DS_LANES] __attribute__((aligned(64)));
   uint index[DS_LANES] __attribute__((aligned(64)));
   int inside[DS_LANES] __attribute__((aligned(64)));
-  for (int c = 0; c < 3; ++c) {
-    *(real*)value[k_film_sum + c] = sums->sum[c];
-    *(real*)value[k_film_compensation + c] = sums->compensation[c];
-  }
-  *(real*)value[k_film_rejected] = sums->rejected;
-  *(real*)value[k_film_halves] = sums->halves;
+  for (int i = 0; i < k_sums; ++i)
+    *(real*)value[i] = sums->plane[i];
   *(natural*)index = pixels->index;
   *(mask*)inside = pixels->inside;
   for (int lane = 0; lane < DS_LANES; ++lane) {
     if (!inside[lane]) continue;
-    for (int i = 0; i < k_film_planes; ++i)
-      film[i * plane + index[lane]] = value[i][lane];
+    for (int i = 0; i < k_sums; ++i)
+      sums->film[i * sums->stride + index[lane]] = value[i][lane];
+  }
+}
+
+/// Counts the samples of `odd` by what is wrong with them and scales outliers down; returns the
+/// lanes of these, which are good now. By bits, since fast math takes NaN for impossible.
+DS_FN mask tame_samples(const Sums* sums, real3* radiance, mask odd) {
+  float sample[3][DS_LANES] __attribute__((aligned(64)));
+  uint index[DS_LANES] __attribute__((aligned(64)));
+  int wanted[DS_LANES] __attribute__((aligned(64)));
+  *(real*)sample[0] = radiance->x;
+  *(real*)sample[1] = radiance->y;
+  *(real*)sample[2] = radiance->z;
+  *(natural*)index = sums->index;
+  *(mask*)wanted = odd;
+  for (int lane = 0; lane < DS_LANES; ++lane) {
+    if (!wanted[lane]) continue;
+    uint greatest = 0u;
+    bool negative = false;
+    for (int c = 0; c < 3; ++c) {
+      const uint bits = as_uint(sample[c][lane]);
+      greatest = max(greatest, bits & 0x7fffffffu);
+      negative = negative || (bits > 0x80000000u);
+    }
+    const uint kind = greatest > 0x7f800000u              ? k_film_nan
+                      : greatest > as_uint(k_sample_most) ? k_film_infinite
+                      : negative                          ? k_film_negative
+                                                          : k_film_outliers;
+    sums->film[kind * sums->stride + index[lane]] += 1.0f;
+    wanted[lane] = kind == k_film_outliers ? -1 : 0;
+    if (kind != k_film_outliers) continue;
+    const float factor = sums->limit / as_float(greatest);
+    const float energy =
+        0.2126f * sample[0][lane] + 0.7152f * sample[1][lane] + 0.0722f * sample[2][lane];
+    sums->film[k_film_removed * sums->stride + index[lane]] += energy * (1.0f - factor);
+    for (int c = 0; c < 3; ++c)
+      sample[c][lane] *= factor;
+  }
+  *radiance = vec(*(real*)sample[0], *(real*)sample[1], *(real*)sample[2]);
+  return *(mask*)wanted != 0;
+}
+
+/// Whether x is in [0, limit]. By bits, which floats >= 0 are ordered by: fast math would let NaN
+/// pass.
+DS_FN mask is_within(real x, float limit) {
+  const natural bits = bits_of(x);
+  return (bits <= as_uint(limit)) | (bits == 0x80000000u);
+}
+
+/// Adds the finished samples in `done`, by number.
+DS_FN void add_samples(Sums* sums, mask done, natural number, real3 radiance) {
+  const mask in_range = is_within(radiance.x, sums->limit) & is_within(radiance.y, sums->limit) &
+                        is_within(radiance.z, sums->limit);
+  mask good = done & in_range;
+  const mask odd = done & !in_range;
+  if (any_lane(odd)) good = good | tame_samples(sums, &radiance, odd);
+  const mask even = (number & 1u) == 0u;
+  const real sample[3] = {radiance.x, radiance.y, radiance.z};
+  for (int c = 0; c < 3; ++c) {
+    const real x = choose(good, sample[c], (real)(0.0f));
+    add_compensated(&sums->plane[k_film_sum + c], &sums->plane[k_film_compensation + c], x);
+    sums->plane[k_film_halves + c] = sums->plane[k_film_halves + c] + choose(even, x, -x);
   }
 }
 
@@ -321,7 +354,7 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
   next.t_max = (real)(1e30f);
   next.wanted = paths->alive;
   BatchHits found;
-  trace_lanes(t->nodes, t->leaves, t->triangles, &next, &paths->shadow, &found);
+  trace_lanes(t->nodes, t->leaves, &next, &paths->shadow, &found);
   add_direct(paths, sums, &found);
   mask hit = paths->alive & (*(const natural*)found.id != k_none);
   const mask escapes = paths->alive & !hit;
@@ -392,7 +425,12 @@ __kernel void trace_paths(
     const __global float* restrict triangles, const __global float* restrict materials,
     const __global float* restrict programs, const __global float* restrict lights,
     const __global float* restrict tables, const __global SceneData* restrict scene_data,
-    const __global ViewData* restrict view_data, __global float* restrict film) {
+    const __global ViewData* restrict view_data, const __global uint* restrict steps,
+    __global float* restrict film) {
+  const uint item = (uint)get_global_id(0);
+  const __global uint* step = steps + item * (uint)DS_LANES / 64u * (uint)k_step_words;
+  const uint end = step[k_step_end];
+  if (step[k_step_begin] >= end) return;
   const SceneData scene = *scene_data;
   const ViewData view = *view_data;
   SceneTables t;
@@ -406,17 +444,16 @@ __kernel void trace_paths(
   t.lights.lights = lights;
   t.lights.tables = tables;
   t.lights.triangles = triangles;
-  const Pixels pixels = pixels_of((uint)get_global_id(0), &view);
-  const uint plane = view.width * view.height;
+  const Pixels pixels = pixels_of(step[k_step_tile], item * (uint)DS_LANES % 64u, &view);
   Sums sums;
-  load_sums(&sums, film, &pixels, plane);
+  load_sums(&sums, film, &pixels, &view);
   Paths paths;
   paths.alive = paths.closes = paths.shadow.wanted = (mask)(0);
   paths.shadow.origin = paths.shadow.direction = splat((real)(0.0f));
   paths.shadow.t_max = (real)(0.0f);
   paths.direct = paths.closing = splat((real)(0.0f));
-  paths.sample = (natural)(view.sample_begin);
-  start_paths(&paths, pixels.inside & (paths.sample < view.sample_end), &pixels, &scene, &view, &t);
+  paths.sample = (natural)(step[k_step_begin]);
+  start_paths(&paths, pixels.inside, &pixels, &scene, &view, &t);
   while (any_lane(paths.alive | paths.closes)) {
     const StepEnds ends = advance(&paths, &sums, &pixels, &scene, &view, &t);
     const mask over = ends.done | ends.closes;
@@ -426,8 +463,8 @@ __kernel void trace_paths(
     paths.closes = ends.closes;
     paths.alive = paths.alive & !over;
     paths.sample += choose_natural(over, (natural)(1u), (natural)(0u));
-    const mask start = over & (paths.sample < view.sample_end);
+    const mask start = over & (paths.sample < end);
     if (any_lane(start)) start_paths(&paths, start, &pixels, &scene, &view, &t);
   }
-  store_sums(&sums, film, &pixels, plane);
+  store_sums(&sums, &pixels);
 }

@@ -52,7 +52,7 @@ __kernel void trace_batches(const __global float8* restrict nodes,
   LaneRays any = nearest;
   any.wanted = nearest.wanted & (ask_any != 0 ? (mask)(-1) : (mask)(0));
   BatchHits found;
-  trace_lanes(nodes, leaves, 0, &nearest, &any, &found);
+  trace_lanes(nodes, leaves, &nearest, &any, &found);
   for (uint lane = 0; lane < DS_LANES; ++lane) {
     hits[2 * (first + lane)] = found.t[lane];
     hits[2 * (first + lane) + 1] = as_float(found.id[lane]);

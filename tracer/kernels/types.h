@@ -26,8 +26,8 @@ typedef struct {
   float lens_up[3];
   float focus_distance;  ///< along forward, metres
   uint width, height;
-  uint tiles_x;  ///< tiles of 8x8 pixels in a row of tiles
-  uint sample_begin, sample_end;
+  uint tiles_x;        ///< tiles of 8x8 pixels in a row of tiles
+  float sample_limit;  ///< greatest component a sample may have; what is brighter is scaled down
   uint seed_low, seed_high;
   uint depth_total, depth_diffuse, depth_glossy, depth_specular;
   uint roulette_depth;
@@ -35,7 +35,7 @@ typedef struct {
 } ViewData;
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(SceneData) == 5 * 4 && sizeof(ViewData) == 32 * 4, "no padding");
+static_assert(sizeof(SceneData) == 5 * 4 && sizeof(ViewData) == 31 * 4, "no padding");
 #endif
 
 enum {
@@ -55,15 +55,15 @@ enum {
   k_leaf_vectors = 10,
   k_leaf_ids = 9,
 
-  // A triangle's row in `triangles`, two cache lines; what every program reads stands first.
+  // A triangle's row in `triangles`.
   k_triangle_positions = 0,  ///< 9
   k_triangle_normals = 9,    ///< 9, unit
-  k_triangle_material = 18,  ///< row of materials
-  k_triangle_light = 19,     ///< row of lights, or k_none
-  k_triangle_object = 20,    ///< object id
-  k_triangle_flags = 21,     ///< k_flag_*
-  k_triangle_uvs = 22,       ///< 6
-  k_triangle_words = 32,
+  k_triangle_uvs = 18,       ///< 6
+  k_triangle_material = 24,  ///< row of materials
+  k_triangle_light = 25,     ///< row of lights, or k_none
+  k_triangle_object = 26,    ///< object id
+  k_triangle_flags = 27,     ///< k_flag_*
+  k_triangle_words = 28,
   k_flag_camera_invisible = 1,
 
   // A row of materials: a head, then the inputs.
@@ -81,11 +81,22 @@ enum {
 };
 #define k_none 0xffffffffu
 
+/// Greatest component of a sample that can be added at all; above it counts as infinite.
+#define k_sample_most 1e30f
+
 /// One pixel's running sums in film: planes of `width * height` floats, in this order.
 enum {
   k_film_sum = 0,           ///< 3: r, g, b
   k_film_compensation = 3,  ///< 3: what rounding has cut off (add_compensated of math.h)
-  k_film_rejected = 6,      ///< samples that were not finite or negative, as a float
-  k_film_halves = 7,  ///< luminance of even samples minus that of odd ones: two independent halves
-  k_film_planes = 8,
+  k_film_halves = 6,        ///< 3: even samples minus odd ones: two independent halves
+  k_film_nan = 9,           ///< samples not added because a component was not a number, ...
+  k_film_infinite = 10,     ///< ... was infinite or above k_sample_most, ...
+  k_film_negative = 11,     ///< ... was negative; each sample has the first kind that fits
+  k_film_outliers = 12,     ///< samples scaled down to ViewData::sample_limit
+  k_film_removed = 13,      ///< luminance that this took from them
+  k_film_planes = 14,
 };
+
+/// What a launch traces: for each tile of 8x8 pixels its number, row by row, and the numbers of its
+/// pixels' first sample and the one behind the last. An entry with no samples does nothing.
+enum { k_step_tile = 0, k_step_begin = 1, k_step_end = 2, k_step_words = 3 };

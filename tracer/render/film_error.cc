@@ -2,27 +2,45 @@
 #include "tracer/render/film_error.h"
 
 #include "tracer/base/error.h"
+#include "tracer/render/strict_math.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ds {
+namespace {
 
-std::optional<double> relative_error(std::span<const float> rgb, std::span<const float> halves,
-                                     int spp) {
-  DS_ASSERT(rgb.size() == 3 * halves.size());
-  if (spp < 2) return std::nullopt;
-  double luminance = 0;
-  double variance = 0;
-  for (std::size_t i = 0; i < halves.size(); ++i) {
-    const double y = 0.2126 * double{rgb[3 * i]} + 0.7152 * double{rgb[3 * i + 1]} +
-                     0.0722 * double{rgb[3 * i + 2]};
-    // An odd count leaves the even half one sample longer: its surplus is taken out as one mean.
-    const double difference = double{halves[i]} - (spp % 2 == 1 ? y : 0.0);
-    luminance += y;
-    variance += (difference / spp) * (difference / spp);
+double luminance(const float* rgb) {
+  return k_luminance_r * double{rgb[0]} + k_luminance_g * double{rgb[1]} +
+         k_luminance_b * double{rgb[2]};
+}
+
+}  // namespace
+
+ErrorEstimate ErrorSum::estimate(double scale, double count) const {
+  if (!(sum_ > 0) || !(scale > 0)) return {};
+  const double n = std::max(1.0, 2 * sum_ * sum_ / sum_of_squares_);
+  // Student's 97.5 % quantile to first order in 1 / n, which keeps to F(n, n) from n = 5 on within
+  // 5 % and is wider below.
+  const double quantile = 1.96 + 2.37 / n;
+  const double factor = strict_exp(quantile / std::sqrt(n));
+  const double value = std::sqrt(sum_ / count) / scale;
+  return {value, value / factor, value * factor};
+}
+
+std::optional<ErrorEstimate> luminance_error(const Film& film) {
+  if (film.halves.empty()) return std::nullopt;
+  DS_ASSERT(film.halves.size() == film.rgb.size());
+  const std::size_t pixels = film.rgb.size() / 3;
+  ErrorSum sum;
+  double mean = 0;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const double d = luminance(film.halves.data() + 3 * i);
+    mean += luminance(film.rgb.data() + 3 * i);
+    sum.add(d * d);
   }
-  const double pixels = static_cast<double>(halves.size());
-  return luminance > 0 ? std::sqrt(variance / pixels) / (luminance / pixels) : 0.0;
+  const auto count = static_cast<double>(pixels);
+  return sum.estimate(mean / count, count);
 }
 
 }  // namespace ds

@@ -26,11 +26,28 @@ struct EngineSettings {
   float roulette_cap = 0.5f;  ///< least survival probability, (0, 1]
   float filter_width = 3.0f;  ///< Blackman-Harris, full width in pixels; 0: box of one pixel
   std::uint64_t seed = 0;
+  /// Samples with a component above this (linear radiance) are scaled down to it, which loses
+  /// energy; 0 leaves every sample as it is.
+  float outlier_limit = 0;
   MathMode math = MathMode::strict;
 };
 
-/// Linear radiance, the mean over spp samples. Row 0 is the top, left to right, three floats a
-/// pixel.
+/// What is known of a film beside its pixels: a pure function of its samples, as the pixels are.
+struct FilmFacts {
+  std::uint64_t samples = 0;                  ///< camera samples, over all pixels
+  std::uint32_t least_spp = 0, most_spp = 0;  ///< samples of the pixel with fewest and with most
+  /// Samples that were not added, by the first of these that held for one of their components.
+  std::uint64_t nan_samples = 0, infinite_samples = 0, negative_samples = 0;
+  std::uint64_t outlier_samples = 0;  ///< scaled down to EngineSettings::outlier_limit
+  double removed_energy = 0;  ///< luminance that this took, over the luminance there would be
+  /// 95 % interval of the error this very film has, around Film::relative_error.
+  std::optional<double> error_low{}, error_high{};
+
+  bool operator==(const FilmFacts&) const = default;
+};
+
+/// Linear radiance, the mean over each pixel's samples. Row 0 is the top, left to right, three
+/// floats a pixel.
 struct Film {
   int width = 0, height = 0;
   std::vector<float> rgb;
@@ -39,6 +56,11 @@ struct Film {
   /// scrambled halves of each pixel's samples (render/film_error.h). 0 for a black film; nothing
   /// for a single sample a pixel, which tells nothing of its error.
   std::optional<double> relative_error{};
+  FilmFacts facts{};
+  /// Half the difference between the means of the even and of the odd samples: rgb plus and minus
+  /// this are two independent estimates. Three floats a pixel; empty where a pixel has one sample,
+  /// and for films read from EXR files.
+  std::vector<float> halves{};
 };
 
 /// One ray a pixel, through its centre and the pinhole (no lens). Row 0 is the top.
@@ -57,7 +79,7 @@ struct TraceProgress {
 struct TracerOptions {
   std::string
       device;     ///< "" = first CPU device, else first of any; a number or part of a name selects
-  int lanes = 0;  ///< N: 0 = 16 on CPUs, 1 on GPUs; 1, 4, 8, 16
+  int lanes = 0;  ///< N: 0 = 8 on CPUs, 1 on GPUs; 1, 4, 8, 16
   int work_group_size = 0;    ///< 0 = 8
   bool full_program = false;  ///< compile every effect in, used or not
   bool high_quality_bvh = false;
@@ -88,6 +110,7 @@ class Tracer {
 
  private:
   struct State;
+  class Picture;
   std::unique_ptr<State> state_;
 };
 

@@ -3,7 +3,8 @@
 #include "tracer/device/opencl.h"
 #include "tracer/device/program_text.h"
 #include "tracer/device/scene_pack.h"
-#include "tracer/render/film_error.h"
+#include "tracer/kernels/layout.h"
+#include "tracer/render/film.h"
 #include "tracer/render/images.h"
 #include "tracer/render/render.h"
 #include "tracer/render/view.h"
@@ -41,31 +42,31 @@ std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
 }
 
-/// Mean radiance from sums and what their rounding cut off.
-Film film_from_sums(const std::vector<float>& sums, int width, int height, int spp) {
-  Film film;
-  film.width = width;
-  film.height = height;
-  const std::size_t plane = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  film.rgb.resize(plane * 3);
-  for (std::size_t i = 0; i < plane; ++i) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double sum = double{sums[(kernels::k_film_sum + c) * plane + i]} +
-                         double{sums[(kernels::k_film_compensation + c) * plane + i]};
-      film.rgb[i * 3 + c] = static_cast<float>(sum / spp);
-    }
-    film.rejected_samples += static_cast<std::uint64_t>(sums[kernels::k_film_rejected * plane + i]);
+/// More samples for one tile: from the number it has to this one.
+struct TileStep {
+  std::size_t tile;
+  std::uint32_t end;
+};
+
+/// What the kernel reads of them, filled up with entries that do nothing to a whole number of
+/// work-groups.
+std::vector<std::uint32_t> step_words(const FilmSums& film, std::span<const TileStep> steps,
+                                      std::size_t entries) {
+  std::vector<std::uint32_t> words(entries * kernels::k_step_words, 0);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const std::size_t at = i * kernels::k_step_words;
+    words[at + kernels::k_step_tile] = static_cast<std::uint32_t>(steps[i].tile);
+    words[at + kernels::k_step_begin] = film.tile_spp[steps[i].tile];
+    words[at + kernels::k_step_end] = steps[i].end;
   }
-  const std::span<const float> halves(sums.data() + kernels::k_film_halves * plane, plane);
-  film.relative_error = relative_error(film.rgb, halves, spp);
-  return film;
+  return words;
 }
 
 }  // namespace
 
 struct Tracer::State {
   explicit State(const TracerOptions& o) : options(o), device(o.device) {
-    lanes = options.lanes != 0 ? options.lanes : device.info().is_cpu ? 16 : 1;
+    lanes = options.lanes != 0 ? options.lanes : device.info().is_cpu ? 8 : 1;
     local_size =
         options.work_group_size != 0 ? static_cast<std::size_t>(options.work_group_size) : 8;
   }
@@ -135,46 +136,84 @@ void Tracer::set_scene(const Scene& scene) {
   state_->scene = std::move(checked);
 }
 
-Film Tracer::trace(const Camera& camera, const EngineSettings& engine,
-                   const std::function<void(const TraceProgress&)>& progress,
-                   const std::atomic<bool>* stop) {
-  State& s = *state_;
-  s.prepare(camera, engine);
-  const kernels::ViewData view = view_data(camera, engine);
-  const std::size_t pixels = static_cast<std::size_t>(view.width) * view.height;
-  const Buffer film = s.device.make_buffer(pixels * kernels::k_film_planes * sizeof(float));
-  s.device.fill_zero(film);
-  const Buffer view_buffer = s.device.upload(std::as_bytes(std::span(&view, 1)));
-  const DeviceScene& t = s.device_scene;
-  unsigned argument = 0;
-  for (const Buffer* b : {&t.nodes, &t.leaves, &t.triangles, &t.materials, &t.programs, &t.lights,
-                          &t.tables, &t.data, &view_buffer, &film})
-    s.path_kernel.set(argument++, *b);
+/// One picture under way: its film on the device, and how it gets more samples.
+class Tracer::Picture {
+ public:
+  Picture(State& state, const Camera& camera, const EngineSettings& engine, FilmSums film,
+          const std::atomic<bool>* stop)
+      : s_(state), film_(std::move(film)), stop_(stop) {
+    const kernels::ViewData view = view_data(camera, engine);
+    view_ = s_.device.upload(std::as_bytes(std::span(&view, 1)));
+    sums_ = s_.device.upload(film_.planes);
+    const DeviceScene& t = s_.device_scene;
+    unsigned argument = 0;
+    const Buffer& v = view_;
+    for (const Buffer* b : {&t.nodes, &t.leaves, &t.triangles, &t.materials, &t.programs, &t.lights,
+                            &t.tables, &t.data, &v})
+      s_.path_kernel.set(argument++, *b);
+    steps_argument_ = argument;
+    s_.path_kernel.set(argument + 1, sums_);
+  }
 
-  // Whole tiles, dealt out in launches of about half a second: often enough to report and to stop.
-  const std::size_t padded = std::size_t{view.tiles_x} * ((view.height + 7) / 8) * 64;
-  const std::size_t items = round_up(padded / static_cast<std::size_t>(s.lanes), s.local_size);
+  const FilmSums& film() const { return film_; }
+
+  /// Traces the steps in launches of about half a second: often enough to report and to stop.
+  /// `progress` gets the samples done of these steps.
+  void add(std::span<const TileStep> steps, const std::function<void(std::uint64_t)>& progress);
+
+ private:
+  State& s_;
+  FilmSums film_;
+  const std::atomic<bool>* stop_;
+  Buffer view_, sums_;
+  unsigned steps_argument_ = 0;
+};
+
+void Tracer::Picture::add(std::span<const TileStep> steps,
+                          const std::function<void(std::uint64_t)>& progress) {
+  const auto lanes = static_cast<std::size_t>(s_.lanes);
+  constexpr std::size_t tile_pixels = std::size_t{k_tile_size} * k_tile_size;
+  const std::size_t items = round_up(steps.size() * tile_pixels / lanes, s_.local_size);
+  const std::size_t entries = round_up(items * lanes, tile_pixels) / tile_pixels;
+  const Buffer words = s_.device.upload(step_words(film_, steps, entries));
+  s_.path_kernel.set(steps_argument_, words);
+  std::uint64_t samples = 0;
+  for (const TileStep& step : steps)
+    samples += std::uint64_t{step.end - film_.tile_spp[step.tile]} * film_.tile_pixels(step.tile);
   const std::size_t least =
-      std::min(items, s.local_size * std::max<std::size_t>(s.device.info().compute_units, 1) * 8);
-  std::size_t launch = round_up(least, s.local_size);
+      std::min(items, s_.local_size * std::max<std::size_t>(s_.device.info().compute_units, 1) * 8);
+  std::size_t launch = round_up(least, s_.local_size);
   for (std::size_t begin = 0; begin < items;) {
-    if (stop != nullptr && stop->load()) fail(ErrorKind::cancelled, "stopped");
+    if (stop_ != nullptr && stop_->load()) fail(ErrorKind::cancelled, "stopped");
     const std::size_t count = std::min(launch, items - begin);
     const auto before = Clock::now();
-    s.device.run(s.path_kernel, begin, count, s.local_size);
+    s_.device.run(s_.path_kernel, begin, count, s_.local_size);
     const double seconds = std::chrono::duration<double>(Clock::now() - before).count();
     begin += count;
     launch =
         round_up(static_cast<std::size_t>(std::clamp(double(count) * 0.5 / std::max(seconds, 1e-4),
                                                      double(least), double(items))),
-                 s.local_size);
-    if (progress)
-      progress({pixels * static_cast<std::uint64_t>(engine.spp) * begin / items,
-                pixels * static_cast<std::uint64_t>(engine.spp)});
+                 s_.local_size);
+    progress(samples * begin / items);
   }
-  std::vector<float> sums(pixels * kernels::k_film_planes);
-  s.device.read(film, std::as_writable_bytes(std::span(sums)));
-  return film_from_sums(sums, engine.width, engine.height, engine.spp);
+  s_.device.read(sums_, std::as_writable_bytes(std::span(film_.planes)));
+  for (const TileStep& step : steps)
+    film_.tile_spp[step.tile] = step.end;
+}
+
+Film Tracer::trace(const Camera& camera, const EngineSettings& engine,
+                   const std::function<void(const TraceProgress&)>& progress,
+                   const std::atomic<bool>* stop) {
+  state_->prepare(camera, engine);
+  Picture picture(*state_, camera, engine, empty_film(engine.width, engine.height), stop);
+  std::vector<TileStep> steps;
+  for (std::size_t tile = 0; tile < picture.film().tile_spp.size(); ++tile)
+    steps.push_back({tile, static_cast<std::uint32_t>(engine.spp)});
+  const std::uint64_t total = picture.film().pixels() * static_cast<std::uint64_t>(engine.spp);
+  picture.add(steps, [&](std::uint64_t done) {
+    if (progress) progress({done, total});
+  });
+  return film_of(picture.film());
 }
 
 Geometry Tracer::trace_geometry(const Camera& camera, int width, int height) {

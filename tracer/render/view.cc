@@ -76,7 +76,8 @@ kernels::ViewData view_data(const Camera& camera, const EngineSettings& engine) 
   v.width = static_cast<std::uint32_t>(engine.width);
   v.height = static_cast<std::uint32_t>(engine.height);
   v.tiles_x = (v.width + 7) / 8;
-  v.sample_end = static_cast<std::uint32_t>(engine.spp);
+  v.sample_limit =
+      engine.outlier_limit > 0 ? std::min(engine.outlier_limit, k_sample_most) : k_sample_most;
   v.seed_low = static_cast<std::uint32_t>(engine.seed);
   v.seed_high = static_cast<std::uint32_t>(engine.seed >> 32);
   v.depth_total = static_cast<std::uint32_t>(engine.depth_total);
@@ -117,6 +118,7 @@ std::string canonical_engine(const Scene& scene, const Camera& camera,
   text.add("roulette_cap", engine.roulette_cap);
   text.add("filter_width", engine.filter_width);
   text.add("seed", engine.seed);
+  if (engine.outlier_limit > 0) text.add("outlier_limit", engine.outlier_limit);
   text.add("math", engine.math == MathMode::strict ? "strict" : "fast");
   text.add("host_render_version", k_host_render_version);
   text.add("program", strip_comments(path_program_text(features_of(scene, camera))));

@@ -14,7 +14,7 @@ struct CameraFrame {
 /// too). Throws Error(recipe) for a target at the position.
 CameraFrame camera_frame(const Camera& camera);
 
-/// The constants the kernels take. fov_deg spans the longer side. Samples from 0 to engine.spp.
+/// The constants the kernels take. fov_deg spans the longer side.
 kernels::ViewData view_data(const Camera& camera, const EngineSettings& engine);
 
 /// tan of half the angle, degrees in (0, 180), from + - * / and sqrt alone: the same bits on every
