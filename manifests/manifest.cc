@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "manifests/manifest.h"
 
+#include "manifests/film_facts.h"
 #include "manifests/json_text.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
@@ -60,6 +61,7 @@ json to_json_value(const ImageRecord& image) {
           {"tone_map_scale", image.tone_map_scale},
           {"rejected_samples", image.rejected_samples},
           {"relative_error", image.relative_error ? json(*image.relative_error) : json()},
+          {"film", to_json_value(image.film)},
           {"render_key", image.render_key.hex()},
           {"files_key", image.files_key.hex()},
           {"parts",

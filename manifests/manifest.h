@@ -3,6 +3,7 @@
 
 #include "manifests/camera_geometry.h"
 #include "tracer/base/hash.h"
+#include "tracer/render/render.h"
 
 #include <array>
 #include <cstdint>
@@ -53,6 +54,7 @@ struct ImageRecord {
   /// Estimated RMS error of the linear picture's luminance over its mean, from the picture's own
   /// samples; null in the file where one sample a pixel tells nothing of it.
   std::optional<double> relative_error{};
+  FilmFacts film{};  ///< "film": samples taken, samples refused by kind, the error's 95 % interval
   Hash128 render_key, files_key;
   std::array<Hash128, 5> parts{};  ///< model, material, environment, camera, engine
 };

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "manifests/film_facts.h"
 #include "manifests/json_text.h"
 #include "manifests/manifest.h"
 #include "tracer/base/error.h"
@@ -60,6 +61,16 @@ class Fields {
     if (value == nullptr || value->is_null()) return;
     to.emplace();
     number(name, *to);
+  }
+  /// An older dsbuild wrote none.
+  void film(FilmFacts& to) {
+    const auto at = object_.find("film");
+    if (at == object_.end()) return;
+    try {
+      to = film_facts_from(*at);
+    } catch (const Error& error) {
+      diagnostics_.add(place_, "{}", error.what());
+    }
   }
   void hash(const char* name, Hash128& to) {
     std::string hex;
@@ -176,6 +187,7 @@ ImageRecord image_from(const std::string& line, const SourcePlace& place,
   fields.number("tone_map_scale", image.tone_map_scale);
   fields.count("rejected_samples", image.rejected_samples);
   fields.optional_number("relative_error", image.relative_error);
+  fields.film(image.film);
   fields.hash("render_key", image.render_key);
   fields.hash("files_key", image.files_key);
   if (const json* parts = fields.find("parts")) read_parts(*parts, place, diagnostics, image);

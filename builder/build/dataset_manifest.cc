@@ -105,6 +105,7 @@ ImageRecord image_record(const PlannedImage& image, Database& database) {
       record.tone_map_scale = product->tone_map_scale;
       record.rejected_samples = product->rejected_samples;
       record.relative_error = product->relative_error;
+      record.film = product->facts;
     }
   }
   return record;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/image_maker.h"
 
+#include "builder/build/limits.h"
 #include "tracer/base/error.h"
 #include "tracer/render/develop.h"
 
@@ -78,6 +79,7 @@ Film ImageMaker::trace_film(Work& work) {
     Product product = product_of(work.image.keys.render, "film");
     product.rejected_samples = film.rejected_samples;
     product.relative_error = film.relative_error;
+    product.facts = film.facts;
     keep(work, std::move(product), encode_film_exr(film), {watch.seconds(), renderer().device()});
   }
   return film;
@@ -92,6 +94,7 @@ Film ImageMaker::obtain_film(Work& work) {
   Film film = decode_film_exr(*bytes, "film of " + work.image.spec.id);
   film.rejected_samples = known->rejected_samples;
   film.relative_error = known->relative_error;
+  film.facts = known->facts;
   return film;
 }
 
@@ -106,6 +109,7 @@ Product ImageMaker::develop_image(Work& work, const OutputFile& output) {
   product.tone_map_scale = tone_map_scale(film, tone_map);
   product.rejected_samples = film.rejected_samples;
   product.relative_error = film.relative_error;
+  product.facts = film.facts;
   const std::vector<std::byte> bytes = encode_png(picture);
   return keep(work, std::move(product), bytes, {watch.seconds(), ""});
 }
@@ -155,18 +159,31 @@ void ImageMaker::place(const PlacedFile& file) {
   stamped_.push_back(std::move(stamped));
 }
 
+/// What was made is recorded, so that it is not made again, but nothing is placed.
+void ImageMaker::refuse_over_limit(const Work& work, const Product& picture) {
+  try {
+    check_limits(dataset_.recipe, work.image.spec, picture);
+  } catch (const Error&) {
+    commit(work.image, work.made, {});
+    throw;
+  }
+}
+
 ImageWork ImageMaker::make(const PlannedImage& image, bool force,
                            const std::function<void(const TraceProgress&)>& progress,
                            const std::atomic<bool>& stop) {
   Work work{image, force, progress, stop, {}, {}, {}, {}};
   std::vector<PlacedFile> placed;
+  std::optional<Product> picture;
   for (const PlannedFile& file : image.files) {
     if (file.state == FileState::in_place) continue;
     const Product product = obtain(work, file.output);
     placed.push_back({file.output.path, image.spec.id, file.output.kind, file.output.key,
                       product.object, std::nullopt});
+    if (file.output.kind == "image") picture = product;
   }
   if (!work.made.empty()) dataset_.store->put_record(to_record(work.made));
+  if (picture) refuse_over_limit(work, *picture);
   commit(image, work.made, placed);
   for (const PlacedFile& file : placed)
     place(file);

@@ -53,6 +53,7 @@ class ImageMaker {
                const TraceRun& run);
   void commit(const PlannedImage& image, const std::vector<MadeProduct>& made,
               const std::vector<PlacedFile>& placed);
+  void refuse_over_limit(const Work& work, const Product& picture);
   void place(const PlacedFile& file);
   Renderer& renderer();
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/made_record.h"
 
+#include "manifests/film_facts.h"
 #include "tracer/base/error.h"
 
 #include <nlohmann/json.hpp>
@@ -34,6 +35,8 @@ MadeProduct from_line(const std::string& line) {
   made.product.rejected_samples = object.at("rejected_samples").get<std::uint64_t>();
   if (const json& error = object.at("relative_error"); !error.is_null())
     made.product.relative_error = error.get<double>();
+  if (const auto facts = object.find("facts"); facts != object.end())
+    made.product.facts = film_facts_from(*facts);
   made.run.seconds = object.at("seconds").get<double>();
   made.run.device = object.at("device").get<std::string>();
   return made;
@@ -54,6 +57,7 @@ std::string to_record(const std::vector<MadeProduct>& made) {
         {"tone_map_scale", product.tone_map_scale},
         {"rejected_samples", product.rejected_samples},
         {"relative_error", product.relative_error ? json(*product.relative_error) : json()},
+        {"facts", to_json_value(product.facts)},
         {"seconds", run.seconds},
         {"device", run.device}};
     text += object.dump(-1, ' ', false, json::error_handler_t::replace) + '\n';
@@ -67,6 +71,10 @@ std::vector<MadeProduct> from_record(const std::string& text) {
   try {
     for (std::string line; std::getline(lines, line);)
       made.push_back(from_line(line));
+  } catch (const UnreadableRecord&) {
+    throw;
+  } catch (const Error& error) {
+    throw UnreadableRecord(fmt::format("a record of the store cannot be read: {}", error.what()));
   } catch (const json::exception& error) {
     throw UnreadableRecord(fmt::format("a record of the store cannot be read: {}", error.what()));
   }

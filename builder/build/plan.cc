@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/plan.h"
 
+#include "builder/build/limits.h"
+
 #include <algorithm>
 #include <set>
 
@@ -32,6 +34,7 @@ class Planner {
   std::string why_not_in_place(const PlannedImage& image, const OutputFile& output);
   void plan_files(PlannedImage& image, bool changed);
   void add_changes(PlannedImage& image, const PartHashes& before);
+  void check_known_picture(const PlannedImage& image);
 
   Dataset& dataset_;
   Database& database_;
@@ -92,7 +95,18 @@ void Planner::plan_files(PlannedImage& image, bool changed) {
   }
 }
 
+/// A picture that was traced and refused is not traced again: it fails as it did.
+void Planner::check_known_picture(const PlannedImage& image) {
+  if (force_) return;
+  for (const OutputFile& output : image.keys.outputs) {
+    if (output.kind != "image") continue;
+    if (const auto known = database_.find_product(output.key))
+      check_limits(dataset_.recipe, image.spec, *known);
+  }
+}
+
 void Planner::plan(PlannedImage& image) {
+  check_known_picture(image);
   const auto known = known_.find(image.spec.id);
   const bool changed = known != known_.end() && known->second != image.keys.parts;
   if (force_) image.reasons.emplace_back("forced");
@@ -150,7 +164,10 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force) {
     } catch (const DamagedDatabase&) {
       throw;
     } catch (const Error& error) {
-      image.error = error;
+      PlannedImage failed;
+      failed.spec = std::move(image.spec);
+      failed.error = error;
+      image = std::move(failed);
     }
     plan.images.push_back(std::move(image));
   }

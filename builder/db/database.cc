@@ -2,6 +2,7 @@
 #include "builder/db/database.h"
 
 #include "builder/db/schema.h"
+#include "manifests/film_facts.h"
 
 #include <nlohmann/json.hpp>
 
@@ -14,6 +15,14 @@ Hash128 hash_column(const Statement& row, int column) {
     throw DamagedDatabase(
         fmt::format("the database is damaged: \"{}\" is no hash", row.text(column)));
   return *hash;
+}
+
+FilmFacts facts_column(const Statement& row, int column) {
+  try {
+    return film_facts_from_text(row.text(column));
+  } catch (const Error& error) {
+    throw DamagedDatabase(fmt::format("the database is damaged: {}", error.what()));
+  }
 }
 
 std::vector<std::string> parse_overrides(const std::string& text) {
@@ -90,17 +99,25 @@ bool Database::has_products() {
 std::optional<Product> Database::find_product(Hash128 key) {
   Statement row = connection_.prepare(
       "SELECT kind, object, size_bytes, sha256, pixels, tone_map_scale, rejected_samples, "
-      "relative_error FROM product WHERE key = ?1");
+      "relative_error, facts FROM product WHERE key = ?1");
   if (!row.bind(1, key.hex()).step()) return std::nullopt;
-  return Product{key,          row.text(0),  hash_column(row, 1),
-                 row.count(2), row.text(3),  hash_column(row, 4),
-                 row.real(5),  row.count(6), row.optional_real(7)};
+  return Product{key,
+                 row.text(0),
+                 hash_column(row, 1),
+                 row.count(2),
+                 row.text(3),
+                 hash_column(row, 4),
+                 row.real(5),
+                 row.count(6),
+                 row.optional_real(7),
+                 facts_column(row, 8)};
 }
 
 void Database::put_product(const Product& product, const TraceRun& run) {
   connection_
       .prepare(
-          "INSERT OR REPLACE INTO product VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)")
+          "INSERT OR REPLACE INTO product VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, "
+          "?12)")
       .bind(1, product.key.hex())
       .bind(2, product.kind)
       .bind(3, product.object.hex())
@@ -112,6 +129,7 @@ void Database::put_product(const Product& product, const TraceRun& run) {
       .bind_optional(9, product.relative_error)
       .bind(10, run.seconds)
       .bind(11, run.device)
+      .bind(12, to_text(product.facts))
       .run();
 }
 

@@ -4,6 +4,7 @@
 #include "builder/db/file_stamp.h"
 #include "builder/db/sqlite.h"
 #include "tracer/base/hash.h"
+#include "tracer/render/render.h"
 
 #include <array>
 #include <cstdint>
@@ -29,6 +30,7 @@ struct Product {
   std::uint64_t rejected_samples = 0;  ///< films and images
   std::optional<double>
       relative_error{};  ///< films and images: Film::relative_error, where it is known
+  FilmFacts facts{};     ///< films and images: of the film
 };
 
 /// How and when a film was made. Never in a manifest: another machine has other values.

@@ -31,7 +31,8 @@ CREATE TABLE product (
   rejected_samples INTEGER NOT NULL,
   relative_error REAL,        -- NULL where nothing is known of it
   seconds REAL NOT NULL,
-  device TEXT NOT NULL
+  device TEXT NOT NULL,
+  facts TEXT NOT NULL DEFAULT ''  -- FilmFacts as JSON
 ) WITHOUT ROWID;
 CREATE TABLE dataset (
   id TEXT PRIMARY KEY,
@@ -65,9 +66,15 @@ CREATE TABLE build (
   seconds REAL NOT NULL
 );
 CREATE INDEX build_dataset ON build (dataset);
-PRAGMA user_version = 1;
+PRAGMA user_version = 2;
 )sql";
-static_assert(k_schema_version == 1, "the last line of k_tables states the version too");
+static_assert(k_schema_version == 2, "the last line of k_tables states the version too");
+
+/// From version 1 to 2.
+constexpr const char* k_add_facts = R"sql(
+ALTER TABLE product ADD COLUMN facts TEXT NOT NULL DEFAULT '';
+PRAGMA user_version = 2;
+)sql";
 
 std::int64_t user_version(Connection& connection) {
   Statement statement = connection.prepare("PRAGMA user_version");
@@ -91,6 +98,11 @@ void prepare_schema(Connection& connection, const std::string& name) {
   if (version > k_schema_version)
     fail(ErrorKind::io, "{}: wanted a database of version {}, found {}: made by a newer dsbuild",
          name, k_schema_version, version);
+  if (version == 1) {
+    connection.execute(k_add_facts);
+    transaction.commit();
+    return;
+  }
   if (version != 0 || has_tables(connection))
     throw DamagedDatabase(
         fmt::format("{}: the database is damaged: it is no database of dsbuild", name));

@@ -163,6 +163,13 @@ constexpr std::array k_keys = {
             "Full width of the Blackman-Harris pixel filter; 0 is a box of one pixel"},
     KeySpec{"engine.math", choice, "", "\"strict\"", k_any, R"("strict" | "fast")", "",
             "\"strict\": the same bits on every device; \"fast\": for previews"},
+    KeySpec{
+        "engine.outlier_limit", number, "radiance", "0", between(0, 1e12), "", "",
+        "Scale samples down whose greatest component (linear, before the tone map) is above "
+        "this, which takes light away: see Samples that are not added. 0: no sample is touched"},
+    KeySpec{"engine.rejected_limit", number, "", "0.001", between(0, 1), "", "",
+            "Largest share of a picture's samples that may be NaN, infinite or negative; over it "
+            "the picture fails"},
 
     KeySpec{"outputs.image", choice, "", "\"png\"", k_any, "\"png\"", "",
             "Format of the pictures: 8 bit RGB, images/MODEL/VIEW.png"},

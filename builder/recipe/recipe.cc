@@ -50,6 +50,7 @@ EngineSettings read_engine(const Settings& settings) {
   engine.roulette_depth = settings.integer("engine.roulette_depth");
   engine.roulette_cap = static_cast<float>(settings.number("engine.roulette_cap"));
   engine.filter_width = static_cast<float>(settings.number("engine.filter_width"));
+  engine.outlier_limit = static_cast<float>(settings.number("engine.outlier_limit"));
   engine.math = choice<MathMode, 2>(settings, "engine.math", {"strict", "fast"});
   return engine;
 }
@@ -246,6 +247,7 @@ Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrid
   recipe.view_names = std::move(views.names);
   recipe.engine = read_engine(settings);
   recipe.outputs = read_outputs(settings);
+  recipe.rejected_limit = settings.number("engine.rejected_limit");
   recipe.keep_film = settings.boolean("outputs.keep_film");
   diagnostics.throw_if_any();
   recipe.settings = canonical_settings(settings, recipe);

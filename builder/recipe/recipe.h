@@ -60,6 +60,7 @@ struct Recipe {
   EngineSettings engine;
   OutputSettings outputs;
   bool keep_film = true;
+  double rejected_limit = 0.001;  ///< share of a picture's samples
   /// Every key that has an effect and a value, "engine.spp" -> "64", as canonical_recipe writes
   /// them.
   std::vector<std::pair<std::string, std::string>> settings;

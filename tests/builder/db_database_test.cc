@@ -16,7 +16,9 @@ constexpr Hash128 k_a{1, 2}, k_b{3, 4};
 TEST(Database, RemembersAProductAndReplacesIt) {
   Database database({});
   EXPECT_FALSE(database.find_product(k_a));
-  Product product{k_a, "image", k_b, 17, std::string(64, 'f'), k_a, 0.25, 3};
+  Product product{k_a, "image", k_b, 17, std::string(64, 'f'), k_a, 0.25, 3, {}, {}};
+  product.facts.samples = std::uint64_t{1} << 40;
+  product.facts.error_low = 0.1;
   database.put_product(product, {1.5, "a device"});
   product.object = k_a;
   database.put_product(product, {});
@@ -29,6 +31,7 @@ TEST(Database, RemembersAProductAndReplacesIt) {
   EXPECT_EQ(found->pixels, k_a);
   EXPECT_EQ(found->tone_map_scale, 0.25);
   EXPECT_EQ(found->rejected_samples, 3U);
+  EXPECT_EQ(found->facts, product.facts);
 }
 
 TEST(Database, KnowsAFileByEveryPartOfItsStamp) {
@@ -102,6 +105,33 @@ TEST(Database, LogsBuildsNewestFirst) {
   EXPECT_EQ(builds[0].host, "host");
   EXPECT_EQ(builds[0].process, 17);
   EXPECT_EQ(builds[1].outcome, "running");
+}
+
+TEST(Database, ReadsAFileOfVersionOne) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "db.sqlite";
+  const Product product{k_a, "film", k_b, 17, std::string(64, 'f'), k_a, 0.25, 3, 0.5, {}};
+  { Database(file).put_product(product, {}); }
+  {
+    Connection connection(file);
+    connection.execute("ALTER TABLE product DROP COLUMN facts; PRAGMA user_version = 1");
+  }
+  for (int opened = 0; opened < 2; ++opened) {
+    Database database(file);
+    const auto found = database.find_product(k_a);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->object, k_b);
+    EXPECT_EQ(found->relative_error, 0.5);
+    EXPECT_EQ(found->facts, FilmFacts{}) << "version 1 kept none";
+  }
+}
+
+TEST(Database, TakesFactsThatAreNoneForDamage) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "db.sqlite";
+  { Database(file).put_product({k_a, "film", k_b, 17, "", k_a, 0.25, 3, 0.5, {}}, {}); }
+  { Connection(file).execute("UPDATE product SET facts = '{\"samples\":-1}'"); }
+  EXPECT_THROW(Database(file).find_product(k_a), DamagedDatabase);
 }
 
 TEST(Database, RefusesAFileOfANewerProgram) {

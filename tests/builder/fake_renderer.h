@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,9 @@ class FakeRenderer : public Renderer {
  public:
   /// What all fakes of one build share.
   struct Calls {
-    std::vector<std::string> traced, geometry;  ///< ids in order
-    std::string fails_on;                       ///< id of an image that cannot be traced
+    std::vector<std::string> traced, geometry;      ///< ids in order
+    std::string fails_on;                           ///< id of an image that cannot be traced
+    std::map<std::string, std::uint64_t> rejected;  ///< samples that are NaN, by id
     std::atomic<bool>* stop_after_one = nullptr;
   };
   explicit FakeRenderer(Calls& calls) : calls_(calls) {}
@@ -35,6 +37,11 @@ class FakeRenderer : public Renderer {
     const std::uint64_t seed = hash64_text(seed_text(image));
     for (int i = 0; i < film.width * film.height * 3; ++i)
       film.rgb.push_back(unit(seed, static_cast<std::uint64_t>(i)));
+    film.facts.samples = static_cast<std::uint64_t>(film.width) *
+                         static_cast<std::uint64_t>(film.height) *
+                         static_cast<std::uint64_t>(image.engine.spp);
+    if (const auto found = calls_.rejected.find(image.id); found != calls_.rejected.end())
+      film.rejected_samples = film.facts.nan_samples = found->second;
     if (calls_.stop_after_one != nullptr) *calls_.stop_after_one = true;
     return film;
   }

@@ -13,8 +13,10 @@ namespace {
 namespace fs = std::filesystem;
 
 MadeProduct some_product(std::uint64_t i) {
-  return {{{i, 1}, "film", {i, 2}, 10 + i, std::string(64, 'a'), {i, 3}, 0.5, i},
-          {2.5, "a \"device\""}};
+  MadeProduct made{{{i, 1}, "film", {i, 2}, 10 + i, std::string(64, 'a'), {i, 3}, 0.5, i, {}, {}},
+                   {2.5, "a \"device\""}};
+  made.product.facts.infinite_samples = i;
+  return made;
 }
 
 TEST(MadeRecord, ReadsWhatItWrites) {
@@ -26,11 +28,24 @@ TEST(MadeRecord, ReadsWhatItWrites) {
   EXPECT_EQ(made[1].product.pixels, (Hash128{2, 3}));
   EXPECT_EQ(made[1].product.tone_map_scale, 0.5);
   EXPECT_EQ(made[1].product.rejected_samples, 2U);
+  EXPECT_EQ(made[1].product.facts, some_product(2).product.facts);
   EXPECT_EQ(made[1].run.seconds, 2.5);
   EXPECT_EQ(made[1].run.device, "a \"device\"");
 }
 
+TEST(MadeRecord, ReadsRecordsOfBeforeTheFacts) {
+  std::string text = to_record({some_product(1)});
+  const std::size_t at = text.find("\"facts\":{"), end = text.find("},", at) + 2;
+  ASSERT_NE(at, std::string::npos);
+  text.erase(at, end - at);
+  const auto made = from_record(text);
+  ASSERT_EQ(made.size(), 1U);
+  EXPECT_EQ(made[0].product.facts, FilmFacts{});
+  EXPECT_EQ(made[0].product.rejected_samples, 1U);
+}
+
 TEST(MadeRecord, RefusesOtherTexts) {
+  EXPECT_THROW(from_record("{\"facts\":3}\n"), UnreadableRecord);
   EXPECT_THROW(from_record("{\"key\":1}\n"), UnreadableRecord);
   EXPECT_THROW(from_record("{\"key\":\"zz\"}\n"), UnreadableRecord);
   EXPECT_THROW(from_record("no json\n"), UnreadableRecord);

@@ -53,6 +53,11 @@ class ManifestTest : public testing::Test {
       image.tone_map_scale = 1.0 / 3;
       image.relative_error = 0.0625;
       image.rejected_samples = 3;
+      image.film.samples = 256 * 128 * 64;
+      image.film.least_spp = image.film.most_spp = 64;
+      image.film.negative_samples = 3;
+      image.film.removed_energy = 0.1 + 0.2;
+      image.film.error_low = 0.0625 / 2;
       image.render_key = hash_text("key");
       image.files_key = hash_text("files");
       for (std::size_t i = 0; i < 5; ++i)
@@ -94,6 +99,7 @@ TEST_F(ManifestTest, ReadsBackWhatWasWritten) {
     EXPECT_EQ(images[i].focus_distance_m, 0.1 + 0.2);
     EXPECT_EQ(images[i].tone_map_scale, 1.0 / 3);
     EXPECT_EQ(images[i].relative_error, 0.0625);
+    EXPECT_EQ(images[i].film, images_[i].film);
     EXPECT_EQ(images[i].intrinsics, images_[i].intrinsics);
     EXPECT_EQ(images[i].camera_to_world, images_[i].camera_to_world);
     EXPECT_EQ(images[i].parts, images_[i].parts);
@@ -177,11 +183,18 @@ TEST_F(ManifestTest, RefusesWhatNoManifestCanSay) {
       << "nothing is written before all is known to be right";
 }
 
+TEST_F(ManifestTest, ReadsLinesOfBeforeTheFilmsFacts) {
+  nlohmann::json line = nlohmann::json::parse(to_json_line(images_[0]));
+  line.erase("film");
+  EXPECT_EQ(image_from_json_line(line.dump(), "images.jsonl", 1).film, FilmFacts{});
+}
+
 TEST_F(ManifestTest, NamesLineAndFieldOfEveryDamage) {
   write_manifest(folder_, dataset_, images_);
   nlohmann::json first = nlohmann::json::parse(to_json_line(images_[0]));
   first["spp"] = -1;
   first["render_key"] = "zz";
+  first["film"]["most_spp"] = 0x100000000;
   first["camera_to_world"][3] = {0, 0, 1};
   first.erase("view");
   write_file_atomic(folder_ / "manifest/images.jsonl",
@@ -193,6 +206,8 @@ TEST_F(ManifestTest, NamesLineAndFieldOfEveryDamage) {
     const std::string what = error.what();
     EXPECT_EQ(error.kind(), ErrorKind::asset);
     EXPECT_THAT(what, HasSubstr("images.jsonl:1: spp must be a count, got -1\n"));
+    EXPECT_THAT(what, HasSubstr("images.jsonl:1: film.most_spp must be a count or a number, got "
+                                "4294967296\n"));
     EXPECT_THAT(
         what, HasSubstr("images.jsonl:1: render_key must be 32 hexadecimal digits, got \"zz\"\n"));
     EXPECT_THAT(what, HasSubstr("images.jsonl:1: camera_to_world must be rows of numbers, got "));
