@@ -68,6 +68,10 @@ std::uint8_t quantise(double linear, const std::array<double, 255>& starts) {
   return static_cast<std::uint8_t>(above - starts.begin());
 }
 
+/// Of ToneCurve's table: octaves below 1, and steps of equal width in each.
+constexpr int k_curve_octaves = 30;
+constexpr int k_curve_steps = 64;
+
 }  // namespace
 
 double tone_map_scale(const Film& film, const ToneMap& tone_map) {
@@ -81,6 +85,37 @@ double tone_map_scale(const Film& film, const ToneMap& tone_map) {
   }
   DS_ASSERT(false);
   return 1;
+}
+
+ToneCurve::ToneCurve(const ToneMap& tone_map, double scale) : tone_map_(tone_map), scale_(scale) {
+  DS_ASSERT(tone_map.gamma > 0);
+  for (int i = 0; i <= k_curve_octaves * k_curve_steps; ++i) {
+    const double linear = std::ldexp(1.0 + double(i % k_curve_steps) / k_curve_steps,
+                                     i / k_curve_steps - k_curve_octaves);
+    table_.push_back(strict_pow(linear, 1.0 / double{tone_map.gamma}));
+  }
+}
+
+/// Straight between the table's entries, and from the darkest to 0.
+double ToneCurve::power(double linear) const {
+  if (!(linear > 0)) return 0;
+  if (linear >= 1) return 1;
+  int exponent = 0;
+  const double fraction = std::frexp(linear, &exponent);  // in [1/2, 1), exact
+  if (exponent <= -k_curve_octaves) return table_[0] * std::ldexp(linear, k_curve_octaves);
+  const double step = (2 * fraction - 1) * k_curve_steps;
+  const auto whole = static_cast<std::size_t>(step);
+  const std::size_t i =
+      static_cast<std::size_t>(exponent - 1 + k_curve_octaves) * k_curve_steps + whole;
+  return table_[i] + (table_[i + 1] - table_[i]) * (step - static_cast<double>(whole));
+}
+
+std::array<double, 3> ToneCurve::at(const std::array<float, 3>& rgb) const {
+  const double factor = pixel_factor(rgb.data(), tone_map_, scale_);
+  std::array<double, 3> developed{};
+  for (std::size_t c = 0; c < 3; ++c)
+    developed[c] = power(double{rgb[c]} * factor);
+  return developed;
 }
 
 Picture develop(const Film& film, const ToneMap& tone_map) {

@@ -4,6 +4,7 @@
 #include "tracer/base/hash.h"
 #include "tracer/render/render.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -33,6 +34,22 @@ double tone_map_scale(const Film& film, const ToneMap& tone_map);
 /// looks gamma up in a table of 4096 steps. The same bits on every machine: no libm transcendental.
 /// NaN gives 0. gamma > 0.
 Picture develop(const Film& film, const ToneMap& tone_map);
+/// What `develop` makes of linear radiance before it rounds, in [0, 1], within 1e-4 and in a tenth
+/// of the time: for error estimates. The same bits on every machine.
+class ToneCurve {
+ public:
+  /// `scale`: as tone_map_scale finds it.
+  ToneCurve(const ToneMap& tone_map, double scale);
+  std::array<double, 3> at(const std::array<float, 3>& rgb) const;
+
+ private:
+  double power(double linear) const;
+
+  ToneMap tone_map_;
+  double scale_;
+  std::vector<double> table_;  ///< v^(1 / gamma) at the steps of `power`
+};
+
 /// 0 and 255 only.
 Picture mask_picture(const Geometry& geometry);
 

@@ -21,21 +21,6 @@ std::uint64_t count(const FilmSums& sums, int plane) {
   return static_cast<std::uint64_t>(total(sums.plane(plane)));
 }
 
-/// Of every pixel, so that a count of samples and a sum of radiance mean the same everywhere.
-void add_pixel(Film& film, const FilmSums& sums, std::size_t i, std::uint32_t spp) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    const auto value = [&](int plane) {
-      return double{sums.planes[(static_cast<std::size_t>(plane) + c) * sums.pixels() + i]};
-    };
-    const double sum = value(kernels::k_film_sum) + value(kernels::k_film_compensation);
-    film.rgb[3 * i + c] = static_cast<float>(sum / spp);
-    if (spp < 2) continue;
-    // An odd count leaves the even half one sample longer: its surplus is taken out as one mean.
-    const double surplus = spp % 2 == 1 ? sum / spp : 0.0;
-    film.halves[3 * i + c] = static_cast<float>((value(kernels::k_film_halves) - surplus) / spp);
-  }
-}
-
 /// Luminance that scaling outliers down took, over what there would be with it.
 double removed_share(const FilmSums& sums) {
   const double removed = total(sums.plane(kernels::k_film_removed));
@@ -62,6 +47,22 @@ std::uint64_t FilmSums::samples() const {
   return sum;
 }
 
+PixelEstimate pixel_of(const FilmSums& film, std::size_t pixel, std::uint32_t spp) {
+  PixelEstimate estimate;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto value = [&](int plane) {
+      return double{film.planes[(static_cast<std::size_t>(plane) + c) * film.pixels() + pixel]};
+    };
+    const double sum = value(kernels::k_film_sum) + value(kernels::k_film_compensation);
+    estimate.mean[c] = static_cast<float>(sum / spp);
+    if (spp < 2) continue;
+    // An odd count leaves the even half one sample longer: its surplus is taken out as one mean.
+    const double surplus = spp % 2 == 1 ? sum / spp : 0.0;
+    estimate.half[c] = static_cast<float>((value(kernels::k_film_halves) - surplus) / spp);
+  }
+  return estimate;
+}
+
 FilmSums empty_film(int width, int height) {
   FilmSums sums;
   sums.width = width;
@@ -80,9 +81,13 @@ Film film_of(const FilmSums& sums) {
   const auto [least, most] = std::minmax_element(sums.tile_spp.begin(), sums.tile_spp.end());
   DS_ASSERT(*least > 0);
   if (*least > 1) film.halves.resize(film.rgb.size());
-  const auto width = static_cast<std::size_t>(sums.width);
-  for (std::size_t i = 0; i < sums.pixels(); ++i)
-    add_pixel(film, sums, i, sums.spp_at(i % width, i / width));
+  for (std::size_t tile = 0; tile < sums.tile_spp.size(); ++tile)
+    sums.visit_tile(tile, [&](std::size_t pixel) {
+      const PixelEstimate estimate = pixel_of(sums, pixel, sums.tile_spp[tile]);
+      std::copy_n(estimate.mean.begin(), 3, film.rgb.data() + 3 * pixel);
+      if (!film.halves.empty())
+        std::copy_n(estimate.half.begin(), 3, film.halves.data() + 3 * pixel);
+    });
   FilmFacts& facts = film.facts;
   facts.samples = sums.samples();
   facts.least_spp = *least;

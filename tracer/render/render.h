@@ -15,11 +15,19 @@ namespace ds {
 
 enum class MathMode { strict, fast };
 
+/// Samples until a picture is as exact as wanted, in place of the same number for every pixel.
+struct ErrorTarget {
+  double error = 0.02;  ///< largest upper end of the developed picture's error, see Schedule
+  int max_spp = 1024;   ///< samples a pixel on the picture's average, 16 .. 2^24: the most it gets
+  ToneMap tone_map{};   ///< what it is developed with
+};
+
 /// Everything about how a picture is traced that is not scene or camera. All of it is in the render
 /// key.
 struct EngineSettings {
   int width = 512, height = 512;  ///< 1 .. 16384
-  int spp = 64;                   ///< samples a pixel, 1 .. 2^24
+  int spp = 64;                   ///< samples a pixel, 1 .. 2^24; not with a target
+  std::optional<ErrorTarget> target{};
   int depth_total = 6;  ///< path vertices after the camera, >= 1 (LuxCore path.pathdepth.total)
   int depth_diffuse = 4, depth_glossy = 4, depth_specular = 6;
   int roulette_depth = 3;     ///< first vertex at which Russian roulette may end a path
@@ -42,6 +50,10 @@ struct FilmFacts {
   double removed_energy = 0;  ///< luminance that this took, over the luminance there would be
   /// 95 % interval of the error this very film has, around Film::relative_error.
   std::optional<double> error_low{}, error_high{};
+  /// With an error target: the developed picture's error that was reached and its 95 % interval
+  /// (Schedule), and whether max_spp ended it before its upper end was the error wanted.
+  std::optional<double> developed_error{}, developed_low{}, developed_high{};
+  bool capped = false;
 
   bool operator==(const FilmFacts&) const = default;
 };
@@ -61,7 +73,10 @@ struct Film {
   /// this are two independent estimates. Three floats a pixel; empty where a pixel has one sample,
   /// and for films read from EXR files.
   std::vector<float> halves{};
+  std::uint64_t traced_samples = 0;  ///< by the call that gave this film; it may have gone on
 };
+
+struct FilmSums;
 
 /// One ray a pixel, through its centre and the pinhole (no lens). Row 0 is the top.
 struct Geometry {
@@ -71,7 +86,8 @@ struct Geometry {
 };
 
 struct TraceProgress {
-  std::uint64_t samples_done = 0, samples_total = 0;
+  std::uint64_t samples_done = 0;   ///< by this call
+  std::uint64_t samples_total = 0;  ///< that it takes; at most, with an error target
 };
 
 /// How the tracer runs on one device; none of it may change a bit of a strict picture (tests hold
@@ -99,10 +115,12 @@ class Tracer {
   /// are built when the first picture needs them. Throws Error(asset) or Error(device).
   void set_scene(const Scene& scene);
   /// Path-traces the scene set. Calls `progress` about twice a second; stops early with
-  /// Error(cancelled) once `*stop`.
+  /// Error(cancelled) once `*stop`. `kept` is a film of this very picture that tracing goes on from
+  /// where that gives the bits of one go (only samples and target may differ), else it is dropped;
+  /// afterwards it is the film reached.
   Film trace(const Camera& camera, const EngineSettings& engine,
              const std::function<void(const TraceProgress&)>& progress = {},
-             const std::atomic<bool>* stop = nullptr);
+             const std::atomic<bool>* stop = nullptr, FilmSums* kept = nullptr);
   Geometry trace_geometry(const Camera& camera, int width, int height);
   std::string device_name() const;
   /// Whether the device is this machine's processors: their time is then this process' own.
@@ -118,6 +136,10 @@ class Tracer {
 /// of the program specialised for this scene and camera. Works without any OpenCL device.
 std::string canonical_engine(const Scene& scene, const Camera& camera,
                              const EngineSettings& engine);
+/// The same less what only says when to stop (spp; error and max_spp): pictures that agree in this
+/// go on from each other's films.
+std::string canonical_kept_engine(const Scene& scene, const Camera& camera,
+                                  const EngineSettings& engine);
 /// Canonical text of the camera part.
 std::string canonical_camera(const Camera& camera);
 /// Bumped when host code that can move a pixel changes (mesh normalisation, packing, sky model,

@@ -7,6 +7,7 @@
 #include "tracer/render/film.h"
 #include "tracer/render/images.h"
 #include "tracer/render/render.h"
+#include "tracer/render/schedule.h"
 #include "tracer/render/view.h"
 #include "tracer/scene/scene_check.h"
 #include "tracer/scene/sdl.h"
@@ -42,13 +43,7 @@ std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
 }
 
-/// More samples for one tile: from the number it has to this one.
-struct TileStep {
-  std::size_t tile;
-  std::uint32_t end;
-};
-
-/// What the kernel reads of them, filled up with entries that do nothing to a whole number of
+/// What the kernel reads of the steps, filled up with entries that do nothing to a whole number of
 /// work-groups.
 std::vector<std::uint32_t> step_words(const FilmSums& film, std::span<const TileStep> steps,
                                       std::size_t entries) {
@@ -60,6 +55,15 @@ std::vector<std::uint32_t> step_words(const FilmSums& film, std::span<const Tile
     words[at + kernels::k_step_end] = steps[i].end;
   }
   return words;
+}
+
+/// Whether tracing on from a kept film gives the bits of one go.
+bool goes_on(const EngineSettings& engine, const FilmSums& film) {
+  if (film.empty() || film.width != engine.width || film.height != engine.height) return false;
+  if (engine.target) return Schedule::comes_by(*engine.target, film);
+  const auto [least, most] = std::minmax_element(film.tile_spp.begin(), film.tile_spp.end());
+  return *least == *most && *most <= static_cast<std::uint32_t>(engine.spp) &&
+         !film.schedule.tone_scale;
 }
 
 }  // namespace
@@ -155,7 +159,7 @@ class Tracer::Picture {
     s_.path_kernel.set(argument + 1, sums_);
   }
 
-  const FilmSums& film() const { return film_; }
+  FilmSums& film() { return film_; }
 
   /// Traces the steps in launches of about half a second: often enough to report and to stop.
   /// `progress` gets the samples done of these steps.
@@ -171,6 +175,7 @@ class Tracer::Picture {
 
 void Tracer::Picture::add(std::span<const TileStep> steps,
                           const std::function<void(std::uint64_t)>& progress) {
+  if (steps.empty()) return;
   const auto lanes = static_cast<std::size_t>(s_.lanes);
   constexpr std::size_t tile_pixels = std::size_t{k_tile_size} * k_tile_size;
   const std::size_t items = round_up(steps.size() * tile_pixels / lanes, s_.local_size);
@@ -203,17 +208,41 @@ void Tracer::Picture::add(std::span<const TileStep> steps,
 
 Film Tracer::trace(const Camera& camera, const EngineSettings& engine,
                    const std::function<void(const TraceProgress&)>& progress,
-                   const std::atomic<bool>* stop) {
+                   const std::atomic<bool>* stop, FilmSums* kept) {
   state_->prepare(camera, engine);
-  Picture picture(*state_, camera, engine, empty_film(engine.width, engine.height), stop);
-  std::vector<TileStep> steps;
-  for (std::size_t tile = 0; tile < picture.film().tile_spp.size(); ++tile)
-    steps.push_back({tile, static_cast<std::uint32_t>(engine.spp)});
-  const std::uint64_t total = picture.film().pixels() * static_cast<std::uint64_t>(engine.spp);
-  picture.add(steps, [&](std::uint64_t done) {
-    if (progress) progress({done, total});
-  });
-  return film_of(picture.film());
+  FilmSums begun = kept != nullptr ? std::move(*kept) : FilmSums{};
+  if (!goes_on(engine, begun)) begun = empty_film(engine.width, engine.height);
+  const std::uint64_t before = begun.samples();
+  Picture picture(*state_, camera, engine, std::move(begun), stop);
+  const int most = engine.target ? engine.target->max_spp : engine.spp;
+  const std::uint64_t total = picture.film().pixels() * static_cast<std::uint64_t>(most) - before;
+  const auto trace_steps = [&](const std::vector<TileStep>& steps) {
+    const std::uint64_t base = picture.film().samples() - before;
+    picture.add(steps, [&](std::uint64_t done) {
+      if (progress) progress({base + done, total});
+    });
+  };
+  Film film;
+  if (engine.target) {
+    Schedule schedule(*engine.target, picture.film());
+    for (auto steps = schedule.next(); !steps.empty(); steps = schedule.next()) {
+      trace_steps(steps);
+      schedule.traced(steps);
+    }
+    picture.film().schedule = schedule.state();
+    film = film_of(picture.film());
+    const ErrorEstimate error = schedule.error();
+    film.facts.developed_error = error.value;
+    film.facts.developed_low = error.low;
+    film.facts.developed_high = error.high;
+    film.facts.capped = error.high > engine.target->error;
+  } else {
+    trace_steps(steps_to(picture.film(), static_cast<std::uint32_t>(engine.spp)));
+    film = film_of(picture.film());
+  }
+  film.traced_samples = picture.film().samples() - before;
+  if (kept != nullptr) *kept = std::move(picture.film());
+  return film;
 }
 
 Geometry Tracer::trace_geometry(const Camera& camera, int width, int height) {

@@ -4,6 +4,7 @@
 #include "tracer/base/canonical.h"
 #include "tracer/base/error.h"
 #include "tracer/device/program_text.h"
+#include "tracer/scene/sdl.h"
 
 #include <algorithm>
 #include <array>
@@ -107,9 +108,26 @@ std::string canonical_camera(const Camera& camera) {
 std::string canonical_engine(const Scene& scene, const Camera& camera,
                              const EngineSettings& engine) {
   CanonicalText text;
+  if (engine.target) {
+    text.add("error", engine.target->error);
+    text.add("max_spp", engine.target->max_spp);
+  } else {
+    text.add("spp", engine.spp);
+  }
+  return text.text() + canonical_kept_engine(scene, camera, engine);
+}
+
+std::string canonical_kept_engine(const Scene& scene, const Camera& camera,
+                                  const EngineSettings& engine) {
+  CanonicalText text;
   text.add("width", engine.width);
   text.add("height", engine.height);
-  text.add("spp", engine.spp);
+  if (engine.target) {
+    // What the picture is developed with decides where its samples go.
+    text.add("schedule_version", k_schedule_version);
+    for (const auto& [name, value] : parse_canonical(canonical_tone_map(engine.target->tone_map)))
+      text.add("schedule." + name, value);
+  }
   text.add("depth_total", engine.depth_total);
   text.add("depth_diffuse", engine.depth_diffuse);
   text.add("depth_glossy", engine.depth_glossy);

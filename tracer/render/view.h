@@ -6,6 +6,9 @@
 
 namespace ds {
 
+/// Counted up where a Schedule steps another way.
+inline constexpr int k_schedule_version = 1;
+
 /// Axes of the camera in world space: unit, orthogonal.
 struct CameraFrame {
   Vec3d right, up, forward;

@@ -268,5 +268,39 @@ TEST(PixelHash, ReadsFilesAndNamesThemInErrors) {
   EXPECT_THROW(pixel_hash(folder.path() / "c.png"), Error);
 }
 
+/// What `develop` rounds is what the curve says, for every kind of tone map.
+TEST(ToneCurve, IsWhatDevelopRounds) {
+  Film film = gradient_film(40, 30);
+  for (std::size_t i = 0; i < film.rgb.size(); i += 5)
+    film.rgb[i] *= 1e-4f;
+  film.rgb[7] = 1e-12f;
+  film.rgb[8] = 1e12f;
+  for (const auto kind :
+       {ToneMap::Kind::linear, ToneMap::Kind::reinhard02, ToneMap::Kind::autolinear})
+    for (const float gamma : {1.0f, 1.8f, 2.2f}) {
+      const ToneMap map = tone_map(kind, gamma);
+      const ToneCurve curve(map, tone_map_scale(film, map));
+      const Picture picture = develop(film, map);
+      for (std::size_t i = 0; i < film.rgb.size(); i += 3) {
+        const auto values = curve.at({film.rgb[i], film.rgb[i + 1], film.rgb[i + 2]});
+        for (std::size_t c = 0; c < 3; ++c)
+          ASSERT_NEAR(255 * values[c], picture.pixels[i + c], 0.5 + 255e-4) << gamma << " " << i;
+      }
+    }
+}
+
+TEST(ToneCurve, IsTheFormula) {
+  ToneMap map = tone_map(ToneMap::Kind::linear);
+  const ToneCurve curve(map, 0.5);
+  for (double x = 1e-10; x < 2; x *= 1.0173) {
+    const auto value = static_cast<float>(2 * x);
+    EXPECT_NEAR(curve.at({value, 0, 0})[0], std::pow(std::min(double{value} / 2, 1.0), 1 / 2.2),
+                1e-4)
+        << x;
+  }
+  EXPECT_EQ(curve.at({-1, 0, k_nan})[0], 0);
+  EXPECT_EQ(curve.at({-1, 0, k_nan})[2], 0);
+}
+
 }  // namespace
 }  // namespace ds

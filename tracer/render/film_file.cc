@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/render/film_file.h"
+
+#include "tracer/base/canonical.h"
+#include "tracer/base/error.h"
+#include "tracer/base/hash.h"
+#include "tracer/kernels/layout.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <string_view>
+
+namespace ds {
+namespace {
+
+constexpr std::string_view k_magic = "dsbuild film 1\n";
+constexpr std::array<const char*, 5> k_names{"width", "height", "planes", "tone_scale",
+                                             "least_bound"};
+constexpr int k_most_pixels_a_side = 16384;
+constexpr std::size_t k_checksum_bytes = 16;
+
+void put_u32(std::vector<std::byte>& to, std::uint32_t value) {
+  for (int shift = 0; shift < 32; shift += 8)
+    to.push_back(static_cast<std::byte>(value >> shift & 0xffu));
+}
+
+void put_checksum(std::vector<std::byte>& to, Hash128 hash) {
+  for (const std::uint64_t word : {hash.high, hash.low})
+    for (int shift = 56; shift >= 0; shift -= 8)
+      to.push_back(static_cast<std::byte>(word >> shift & 0xffu));
+}
+
+std::vector<int> planes_with_values(const FilmSums& film) {
+  std::vector<int> planes;
+  for (int i = 0; i < kernels::k_film_planes; ++i) {
+    const std::span<const float> plane = film.plane(i);
+    if (std::any_of(plane.begin(), plane.end(),
+                    [](float v) { return std::bit_cast<std::uint32_t>(v) != 0; }))
+      planes.push_back(i);
+  }
+  return planes;
+}
+
+/// What is left to read of a file; every taking is checked.
+class Reader {
+ public:
+  Reader(std::span<const std::byte> bytes, const std::string& name) : rest_(bytes), name_(name) {}
+
+  [[noreturn]] void refuse(std::string_view why) const {
+    fail(ErrorKind::asset, "{}: no film of this version: {}", name_, why);
+  }
+  std::span<const std::byte> take(std::size_t count) {
+    if (rest_.size() < count) refuse("it is cut off");
+    const auto taken = rest_.first(count);
+    rest_ = rest_.subspan(count);
+    return taken;
+  }
+  std::string line() {
+    const auto end = std::find(rest_.begin(), rest_.end(), std::byte{'\n'});
+    if (end == rest_.end()) refuse("its head has no end");
+    std::string text;
+    for (const std::byte b : take(static_cast<std::size_t>(end - rest_.begin())))
+      text.push_back(static_cast<char>(b));
+    take(1);
+    return text;
+  }
+  /// The value of a line "name=value".
+  std::string value(std::string_view wanted) {
+    const std::string text = line();
+    if (!text.starts_with(std::string(wanted) + "="))
+      refuse(fmt::format("wanted {}=..., found {:?}", wanted, text));
+    return text.substr(wanted.size() + 1);
+  }
+  std::uint32_t u32() {
+    std::uint32_t value = 0;
+    int shift = 0;
+    for (const std::byte b : take(4)) {
+      value |= std::to_integer<std::uint32_t>(b) << shift;
+      shift += 8;
+    }
+    return value;
+  }
+  bool at_end() const { return rest_.empty(); }
+
+ private:
+  std::span<const std::byte> rest_;
+  const std::string& name_;
+};
+
+int number(const Reader& reader, const std::string& text, int least, int most) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < least || value > most)
+    reader.refuse(fmt::format("wanted a number in [{}, {}], found {:?}", least, most, text));
+  return value;
+}
+
+double hex_number(const Reader& reader, const std::string& text) {
+  if (text == "inf") return std::numeric_limits<double>::infinity();
+  double value = 0;
+  const char* begin = text.data() + (text.starts_with("0x") ? 2 : 0);
+  const char* last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(begin, last, value, std::chars_format::hex);
+  if (error != std::errc() || end != last || begin == text.data() || !std::isfinite(value))
+    reader.refuse(fmt::format("wanted a hexadecimal float >= 0, found {:?}", text));
+  return value;
+}
+
+std::vector<int> plane_list(const Reader& reader, const std::string& text) {
+  std::vector<int> planes;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    planes.push_back(number(reader, word, 0, kernels::k_film_planes - 1));
+    if (planes.size() > 1 && planes[planes.size() - 2] >= planes.back())
+      reader.refuse("its planes are out of order");
+  }
+  return planes;
+}
+
+std::span<const std::byte> checked(std::span<const std::byte> bytes, const std::string& name) {
+  const Reader reader(bytes, name);
+  if (bytes.size() < k_checksum_bytes) reader.refuse("it is cut off");
+  const auto content = bytes.first(bytes.size() - k_checksum_bytes);
+  std::vector<std::byte> checksum;
+  put_checksum(checksum, hash_bytes(content));
+  if (!std::equal(checksum.begin(), checksum.end(), bytes.last(k_checksum_bytes).begin()))
+    reader.refuse("its checksum is another");
+  return content;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_film_sums(const FilmSums& film) {
+  DS_ASSERT(!film.empty());
+  const std::vector<int> planes = planes_with_values(film);
+  const ScheduleState& schedule = film.schedule;
+  const std::string values[] = {std::to_string(film.width), std::to_string(film.height),
+                                fmt::format("{}", fmt::join(planes, " ")),
+                                schedule.tone_scale ? hex_float(*schedule.tone_scale) : "none",
+                                hex_float(schedule.least_bound)};
+  std::string head(k_magic);
+  for (std::size_t i = 0; i < k_names.size(); ++i)
+    head += fmt::format("{}={}\n", k_names[i], values[i]);
+  head += '\n';
+  const auto text = bytes_of(head);
+  std::vector<std::byte> bytes(text.begin(), text.end());
+  bytes.reserve(bytes.size() + 4 * (film.tile_spp.size() + planes.size() * film.pixels()) +
+                k_checksum_bytes);
+  for (const std::uint32_t spp : film.tile_spp)
+    put_u32(bytes, spp);
+  for (const int plane : planes)
+    for (const float value : film.plane(plane))
+      put_u32(bytes, std::bit_cast<std::uint32_t>(value));
+  put_checksum(bytes, hash_bytes(bytes));
+  return bytes;
+}
+
+FilmSums decode_film_sums(std::span<const std::byte> bytes, const std::string& name) {
+  Reader reader(checked(bytes, name), name);
+  if (reader.line() + '\n' != k_magic) reader.refuse("it begins otherwise");
+  const int width = number(reader, reader.value(k_names[0]), 1, k_most_pixels_a_side);
+  const int height = number(reader, reader.value(k_names[1]), 1, k_most_pixels_a_side);
+  const std::vector<int> planes = plane_list(reader, reader.value(k_names[2]));
+  const std::string tone_scale = reader.value(k_names[3]);
+  const double least_bound = hex_number(reader, reader.value(k_names[4]));
+  if (!reader.line().empty()) reader.refuse("its head is longer");
+  // Before anything is allocated for a size that a damaged head claims.
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  const std::size_t tiles = FilmSums::tiles_along(width) * FilmSums::tiles_along(height);
+  Reader content(reader.take(4 * (tiles + planes.size() * pixels)), name);
+  if (!reader.at_end()) reader.refuse("it is longer");
+  FilmSums film = empty_film(width, height);
+  if (tone_scale != "none") film.schedule.tone_scale = hex_number(reader, tone_scale);
+  film.schedule.least_bound = least_bound;
+  for (std::uint32_t& spp : film.tile_spp)
+    spp = content.u32();
+  for (const int plane : planes)
+    for (std::size_t i = 0; i < pixels; ++i)
+      film.planes[static_cast<std::size_t>(plane) * pixels + i] =
+          std::bit_cast<float>(content.u32());
+  return film;
+}
+
+}  // namespace ds
