@@ -24,6 +24,10 @@ void visit_fields(Facts& facts, const Visit& visit) {
   visit("removed_energy", facts.removed_energy);
   visit("error_low", facts.error_low);
   visit("error_high", facts.error_high);
+  visit("developed_error", facts.developed_error);
+  visit("developed_low", facts.developed_low);
+  visit("developed_high", facts.developed_high);
+  visit("capped", facts.capped);
 }
 
 template <typename T>
@@ -40,6 +44,11 @@ bool take(const json& value, T& field) {
       value.get<std::uint64_t>() > std::uint64_t{std::numeric_limits<T>::max()})
     return false;
   field = value.get<T>();
+  return true;
+}
+bool take(const json& value, bool& field) {
+  if (!value.is_boolean()) return false;
+  field = value.get<bool>();
   return true;
 }
 bool take(const json& value, double& field) {
@@ -67,7 +76,7 @@ FilmFacts film_facts_from(const json& object) {
   visit_fields(facts, [&](const char* name, auto& field) {
     const auto at = object.find(name);
     if (at != object.end() && !take(*at, field))
-      fail(ErrorKind::asset, "film.{} must be a count or a number, got {}", name,
+      fail(ErrorKind::asset, "film.{} must be a count, a number or a truth, got {}", name,
            at->dump(-1, ' ', false, json::error_handler_t::replace));
   });
   return facts;

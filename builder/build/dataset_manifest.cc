@@ -66,6 +66,13 @@ bool manifest_stands(Dataset& dataset, Hash128 wanted,
       });
 }
 
+/// Of a picture whose pixels have different numbers of samples: the mean, rounded up.
+int mean_spp(const FilmFacts& facts, const ImageRecord& image) {
+  const std::uint64_t pixels =
+      static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
+  return static_cast<int>((facts.samples + pixels - 1) / pixels);
+}
+
 }  // namespace
 
 std::string program_version() {
@@ -106,6 +113,7 @@ ImageRecord image_record(const PlannedImage& image, Database& database) {
       record.rejected_samples = product->rejected_samples;
       record.relative_error = product->relative_error;
       record.film = product->facts;
+      if (spec.engine.target) record.spp = mean_spp(product->facts, record);
     }
   }
   return record;

@@ -183,6 +183,9 @@ void Execution::finish() {
     if (!unfinished_.contains(image.spec.id))
       records.push_back(image_record(image, *dataset_.database));
   }
+  for (const ImageRecord& record : records)
+    if (record.film.capped)
+      result_.capped.emplace_back(record.id, record.film.developed_high.value_or(0));
   update_manifest(dataset_, records);
 }
 

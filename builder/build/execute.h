@@ -32,6 +32,9 @@ struct BuildResult {
   std::vector<std::pair<std::string, std::string>>
       failures;  ///< what ("human.ply/0", "14 images, ..."), why
 
+  /// Images that max_spp ended before engine.error was reached, and the upper end of their error.
+  std::vector<std::pair<std::string, double>> capped;
+
   bool ok() const { return !stopped && failures.empty(); }
 };
 

@@ -3,7 +3,9 @@
 
 #include "builder/build/limits.h"
 #include "tracer/base/error.h"
+#include "tracer/base/log.h"
 #include "tracer/render/develop.h"
+#include "tracer/render/film_file.h"
 
 #include <chrono>
 #include <utility>
@@ -32,6 +34,8 @@ class Stopwatch {
   using Clock = std::chrono::steady_clock;
   Clock::time_point start_ = Clock::now();
 };
+
+constexpr const char* k_sums_kind = "film_sums";
 
 Product product_of(Hash128 key, const std::string& kind) {
   Product product;
@@ -65,16 +69,44 @@ Product ImageMaker::keep(Work& work, Product product, const std::vector<std::byt
   product.object = dataset_.store->put(bytes);
   product.size_bytes = bytes.size();
   product.sha256 = sha256_hex(bytes);
-  product.pixels = pixel_hash(bytes, work.image.spec.id + " " + product.kind);
+  product.pixels = product.kind == k_sums_kind
+                       ? product.object
+                       : pixel_hash(bytes, work.image.spec.id + " " + product.kind);
   work.made.push_back({product, run});
   return product;
 }
 
+/// An empty one where none is kept, or it cannot be read: then tracing starts anew.
+FilmSums ImageMaker::kept_film(const Work& work) {
+  if (work.force || !dataset_.recipe.keep_sums) return {};
+  const std::optional<Product> known = dataset_.database->find_product(work.image.keys.kept);
+  const auto bytes = known ? dataset_.store->get(known->object) : std::nullopt;
+  if (!bytes) return {};
+  try {
+    return decode_film_sums(*bytes, "kept film of " + work.image.spec.id);
+  } catch (const Error& error) {
+    warn(error.what());
+    return {};
+  }
+}
+
+/// Keeps the film with more samples, of the one there was and this one.
+void ImageMaker::keep_sums(Work& work, const FilmSums& sums, std::uint64_t had,
+                           const TraceRun& run) {
+  if (sums.empty() || sums.samples() <= had) return;
+  Product product = product_of(work.image.keys.kept, k_sums_kind);
+  product.facts.samples = sums.samples();
+  keep(work, std::move(product), encode_film_sums(sums), run);
+}
+
 Film ImageMaker::trace_film(Work& work) {
   const Stopwatch watch;
-  Film film = renderer().trace(work.image.spec, work.progress, work.stop);
+  FilmSums sums = kept_film(work);
+  const std::uint64_t had = sums.samples();
+  Film film = renderer().trace(work.image.spec, &sums, work.progress, work.stop);
   work.done.traced = true;
-  work.done.samples += work.image.samples();
+  work.done.samples += film.traced_samples;
+  if (dataset_.recipe.keep_sums) keep_sums(work, sums, had, {watch.seconds(), renderer().device()});
   if (dataset_.recipe.keep_film) {
     Product product = product_of(work.image.keys.render, "film");
     product.rejected_samples = film.rejected_samples;

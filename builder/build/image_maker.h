@@ -4,6 +4,7 @@
 #include "builder/build/made_record.h"
 #include "builder/build/plan.h"
 #include "builder/build/renderer.h"
+#include "tracer/render/film.h"
 
 #include <atomic>
 #include <functional>
@@ -14,9 +15,9 @@ namespace ds {
 
 /// What one image's making took.
 struct ImageWork {
-  bool traced = false;     ///< film or geometry
-  bool developed = false;  ///< a picture was made from a film
-  std::uint64_t samples = 0;
+  bool traced = false;        ///< film or geometry
+  bool developed = false;     ///< a picture was made from a film
+  std::uint64_t samples = 0;  ///< traced now
 };
 
 /// Makes one image at a time: finds what is in the store, traces and develops what is not, records
@@ -47,6 +48,8 @@ class ImageMaker {
   std::optional<Product> find_whole(Hash128 key);
   Film obtain_film(Work& work);
   Film trace_film(Work& work);
+  FilmSums kept_film(const Work& work);
+  void keep_sums(Work& work, const FilmSums& sums, std::uint64_t had, const TraceRun& run);
   Product develop_image(Work& work, const OutputFile& output);
   Product make_geometry_file(Work& work, const OutputFile& output);
   Product keep(Work& work, Product product, const std::vector<std::byte>& bytes,

@@ -166,6 +166,14 @@ ImageKeys KeyMaker::keys(const ImageSpec& image) {
   for (std::size_t i = 0; i < 5; ++i)
     five.add(k_part_names[i], keys.parts[i].hex());
   keys.render = hash_text(five.text());
+  CanonicalText kept;
+  kept.add("kind", "film_sums");
+  for (std::size_t i = 0; i < 4; ++i)
+    kept.add(k_part_names[i], keys.parts[i].hex());
+  kept.add(k_part_names[4],
+           hash_text(canonical_kept_engine(scene_without_model(image), image.camera, image.engine))
+               .hex());
+  keys.kept = hash_text(kept.text());
   keys.geometry = geometry_key(image, keys.parts[0]);
   keys.outputs = outputs(image, keys, tone_map);
 

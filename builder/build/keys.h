@@ -22,6 +22,7 @@ struct OutputFile {
 
 /// The keys of one image: one for each stage, so that a change costs only the stages after it.
 ///   render    what is traced: hash of the five parts
+///   kept      of a film under way: render less spp, error and max_spp
 ///   geometry  what mask and depth are traced from: model, normalisation, the environment's meshes,
 ///   camera less its lens,
 ///             size
@@ -29,6 +30,7 @@ struct OutputFile {
 struct ImageKeys {
   PartHashes parts;  ///< of folded texts; the sixth, "files", is not in `render`
   Hash128 render, geometry;
+  Hash128 kept;   ///< of the film's sums: as render, less what only says when to stop
   Hash128 files;  ///< of all outputs
   std::vector<OutputFile> outputs;
 };

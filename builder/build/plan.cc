@@ -33,6 +33,7 @@ class Planner {
   /// Empty where the file is in place, else why it is not.
   std::string why_not_in_place(const PlannedImage& image, const OutputFile& output);
   void plan_files(PlannedImage& image, bool changed);
+  void find_kept(PlannedImage& image);
   void add_changes(PlannedImage& image, const PartHashes& before);
   void check_known_picture(const PlannedImage& image);
 
@@ -76,6 +77,14 @@ void Planner::add_changes(PlannedImage& image, const PartHashes& before) {
     image.reasons.push_back(fmt::format("and {} more changes", changes.size() - k_most_changes));
 }
 
+/// The kept film that tracing can go on from.
+void Planner::find_kept(PlannedImage& image) {
+  if (force_ || !dataset_.recipe.keep_sums || !in_store(image.keys.kept)) return;
+  const std::uint64_t samples = database_.find_product(image.keys.kept)->facts.samples;
+  // Of another number of samples it is started anew; with an error target the tracer decides.
+  if (samples <= image.samples()) image.kept_samples = samples;
+}
+
 void Planner::plan_files(PlannedImage& image, bool changed) {
   for (const OutputFile& output : image.keys.outputs) {
     PlannedFile file{output, FileState::in_place};
@@ -93,6 +102,7 @@ void Planner::plan_files(PlannedImage& image, bool changed) {
     }
     image.files.push_back(std::move(file));
   }
+  if (image.trace_film) find_kept(image);
 }
 
 /// A picture that was traced and refused is not traced again: it fails as it did.
@@ -147,8 +157,10 @@ void Planner::remember_stamps() {
 
 std::uint64_t PlannedImage::samples() const {
   return static_cast<std::uint64_t>(spec.engine.width) *
-         static_cast<std::uint64_t>(spec.engine.height) *
-         static_cast<std::uint64_t>(spec.engine.spp);
+             static_cast<std::uint64_t>(spec.engine.height) *
+             static_cast<std::uint64_t>(spec.engine.target ? spec.engine.target->max_spp
+                                                           : spec.engine.spp) -
+         kept_samples;
 }
 
 Plan make_plan(Dataset& dataset, Inputs& inputs, bool force) {
@@ -159,6 +171,9 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force) {
     PlannedImage image;
     image.spec = std::move(spec);
     try {
+      if (image.spec.engine.target)
+        image.spec.engine.target->tone_map =
+            tone_map_of(dataset.recipe, inputs.environment(image.spec.environment_folder));
       image.keys = keys.keys(image.spec);
       planner.plan(image);
     } catch (const DamagedDatabase&) {

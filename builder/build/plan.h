@@ -34,12 +34,14 @@ struct PlannedImage {
   ImageKeys keys;
   std::vector<PlannedFile> files;
   bool trace_film = false, trace_geometry = false;
+  std::uint64_t kept_samples = 0;    ///< of a kept film that its film goes on from
   bool record = false;               ///< the database is behind though no file is
   std::vector<std::string> reasons;  ///< why it is stale, each a sentence; empty where it is not
   std::optional<Error> error;  ///< a file of its cannot be read: nothing above is filled but `spec`
 
   bool stale() const { return !reasons.empty(); }
-  std::uint64_t samples() const;  ///< camera samples its film takes
+  /// Camera samples its film still takes; at most, with an error target.
+  std::uint64_t samples() const;
 };
 
 /// A build, before anything is done. A pure reading of recipe, files and database, but for

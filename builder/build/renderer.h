@@ -18,9 +18,9 @@ namespace ds {
 class Renderer {
  public:
   virtual ~Renderer() = default;
-  /// As Tracer::trace: calls `progress` about twice a second, throws Error(cancelled) soon after
-  /// `stop` is set.
-  virtual Film trace(const ImageSpec& image,
+  /// As Tracer::trace: goes on from `kept` where there is one and that gives the same bits, calls
+  /// `progress` about twice a second, throws Error(cancelled) soon after `stop` is set.
+  virtual Film trace(const ImageSpec& image, FilmSums* kept,
                      const std::function<void(const TraceProgress&)>& progress,
                      const std::atomic<bool>& stop) = 0;
   virtual Geometry trace_geometry(const ImageSpec& image) = 0;

@@ -14,10 +14,11 @@ class TracerRenderer : public Renderer {
   TracerRenderer(Inputs& inputs, const Recipe& recipe, const TracerOptions& options)
       : inputs_(inputs), recipe_(recipe), tracer_(options) {}
 
-  Film trace(const ImageSpec& image, const std::function<void(const TraceProgress&)>& progress,
+  Film trace(const ImageSpec& image, FilmSums* kept,
+             const std::function<void(const TraceProgress&)>& progress,
              const std::atomic<bool>& stop) override {
     load(image);
-    return tracer_.trace(image.camera, image.engine, progress, &stop);
+    return tracer_.trace(image.camera, image.engine, progress, &stop, kept);
   }
   Geometry trace_geometry(const ImageSpec& image) override {
     load(image);

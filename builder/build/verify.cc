@@ -124,7 +124,7 @@ class Rerender {
 
   std::vector<std::byte> encode(const std::string& kind) {
     if (kind == "image") {
-      const Film film = renderer_.trace(image_.spec, {}, stop_);
+      const Film film = renderer_.trace(image_.spec, nullptr, {}, stop_);
       return encode_png(
           develop(film, tone_map_of(recipe_, inputs_.environment(image_.spec.environment_folder))));
     }

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace ds {
@@ -16,13 +17,35 @@ nlohmann::json to_json(const BuildResult& result, const Dataset& dataset) {
   nlohmann::json failures = nlohmann::json::array();
   for (const auto& [what, why] : result.failures)
     failures.push_back({{"what", what}, {"why", why}});
-  return {{"images", result.images},           {"built", result.built},
-          {"reused", result.reused},           {"failed", result.failed},
-          {"not_reached", result.not_reached}, {"traced", result.traced},
-          {"developed", result.developed},     {"traced_samples", result.traced_samples},
-          {"seconds", result.seconds},         {"device", result.device},
-          {"stopped", result.stopped},         {"failures", failures},
+  nlohmann::json capped = nlohmann::json::array();
+  for (const auto& [id, error] : result.capped)
+    capped.push_back({{"id", id}, {"error", error}});
+  return {{"images", result.images},
+          {"built", result.built},
+          {"reused", result.reused},
+          {"failed", result.failed},
+          {"not_reached", result.not_reached},
+          {"traced", result.traced},
+          {"developed", result.developed},
+          {"traced_samples", result.traced_samples},
+          {"seconds", result.seconds},
+          {"device", result.device},
+          {"stopped", result.stopped},
+          {"failures", failures},
+          {"capped", capped},
           {"folder", dataset.folder.string()}};
+}
+
+/// The pictures that are less exact than the recipe wants, worst first.
+void print_capped(BuildResult result, const Recipe& recipe) {
+  if (result.capped.empty()) return;
+  std::stable_sort(result.capped.begin(), result.capped.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  fmt::print("{} of {} images did not reach engine.error = {} with engine.max_spp = {}:\n",
+             result.capped.size(), result.images, recipe.engine.target->error,
+             recipe.engine.target->max_spp);
+  for (const auto& [id, error] : result.capped)
+    fmt::print("  {}: {:.4f}\n", id, error);
 }
 
 void print_result(const BuildResult& result, const Dataset& dataset) {
@@ -35,6 +58,7 @@ void print_result(const BuildResult& result, const Dataset& dataset) {
     text += fmt::format("; {:.1f} Msamples traced on {}",
                         static_cast<double>(result.traced_samples) * 1e-6, result.device);
   fmt::print("{}\n", text);
+  print_capped(result, dataset.recipe);
   fmt::print("pictures: {}\n", (dataset.folder / "images").string());
 }
 

@@ -85,9 +85,11 @@ Answer answer(const Wish& wish, const Recipe& recipe, const std::vector<ProbedWo
                         percent(error->low), percent(error->high)),
             error, forecast(work, {error->value, 0})};
   }
-  const Samples samples{wish.error, recipe.engine.spp};
+  // What engine.error will take is not foretold: only what it may.
+  const bool capped = recipe.engine.target.has_value();
+  const Samples samples{wish.error, capped ? recipe.engine.target->max_spp : recipe.engine.spp};
   return {wish.error ? fmt::format("every picture to an error of {}", percent(*wish.error))
-                     : fmt::format("{} samples a pixel", recipe.engine.spp),
+                     : fmt::format("{}{} samples a pixel", capped ? "at most " : "", samples.spp),
           std::nullopt, forecast(work, samples)};
 }
 

@@ -146,7 +146,24 @@ constexpr std::array k_keys = {
             "Width of the picture"},
     KeySpec{"engine.height", integer, "pixel", "512", between(1, 16384), "", "",
             "Height of the picture"},
-    KeySpec{"engine.spp", integer, "", "64", between(1, 1 << 24), "", "", "Samples a pixel"},
+    KeySpec{"engine.spp", integer, "", "64", between(1, 1 << 24), "", "engine.error = false",
+            "Samples a pixel"},
+    KeySpec{"engine.error",
+            number,
+            "",
+            "false",
+            {1e-6, 1},
+            "false",
+            "",
+            "Instead of spp: add samples where they are needed until the developed picture's "
+            "relative error is below this with 97.5 % confidence: see How exact a picture is"},
+    KeySpec{"engine.max_spp", integer, "", "1024", between(16, 1 << 24), "",
+            "engine.error != false",
+            "Most samples a pixel, on the picture's average, to reach engine.error with; a picture "
+            "that needs more is made with these and listed at the end of the build"},
+    KeySpec{"engine.keep_film", boolean, "", "false", k_any, "", "",
+            "Keep each film's sums in the store, 36 bytes a pixel: more spp, or a smaller error, "
+            "then traces the missing samples only"},
     KeySpec{"engine.depth_total", integer, "", "6", between(1, 255), "", "",
             "Longest path: vertices after the camera"},
     KeySpec{"engine.depth_diffuse", integer, "", "4", between(0, 255), "", "",
@@ -228,6 +245,13 @@ std::string KeyRange::text() const {
   if (std::isinf(least) && std::isinf(most)) return "";
   if (std::isinf(most)) return fmt::format("{} {}", open_least ? ">" : ">=", least);
   return fmt::format("in {}{}, {}{}", open_least ? '(' : '[', least, most, open_most ? ')' : ']');
+}
+
+KeyCondition condition_of(const KeySpec& key) {
+  const std::string_view text = key.only_with;
+  const std::size_t space = text.find(' ');
+  const std::size_t literals = text.find("= ") + 2;
+  return {text.substr(0, space), text.substr(literals), text[space + 1] != '!'};
 }
 
 std::span<const KeySpec> recipe_keys() {

@@ -41,8 +41,8 @@ struct KeySpec {
   KeyRange range;                  ///< of integers, numbers and each number of a point
   std::string_view
       choices;  ///< TOML literals separated by " | ": allowed beside (choice: instead of) the type
-  std::string_view
-      only_with;  ///< "camera.set = \"orbit\" | ...": without effect, and so an error, otherwise
+  std::string_view only_with;  ///< "camera.set = \"orbit\" | ..." or "engine.error != false":
+                               ///< without effect, and so an error, otherwise
   std::string_view help;
 
   bool has_default() const { return !default_value.empty() && default_value.front() != '('; }
@@ -55,6 +55,12 @@ const KeySpec* find_key(std::string_view name);
 
 /// "a string", "an integer in [1, 16384]", "\"y\" or \"z\"": what a value must be.
 std::string wanted_text(const KeySpec& key);
+/// only_with, taken apart: the key it asks, and the literals that it must or must not have.
+struct KeyCondition {
+  std::string_view key, literals;
+  bool wanted = true;  ///< false: must not
+};
+KeyCondition condition_of(const KeySpec& key);
 /// Whether a literal (as to_toml writes it) is one of " | "-separated ones.
 bool is_choice(std::string_view choices, std::string_view literal);
 

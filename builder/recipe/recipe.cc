@@ -43,6 +43,11 @@ EngineSettings read_engine(const Settings& settings) {
   engine.width = settings.integer("engine.width");
   engine.height = settings.integer("engine.height");
   engine.spp = settings.integer("engine.spp");
+  if (settings.find("engine.error")->is_number()) {
+    ErrorTarget& target = engine.target.emplace();
+    target.error = settings.number("engine.error");
+    target.max_spp = settings.integer("engine.max_spp");
+  }
   engine.depth_total = settings.integer("engine.depth_total");
   engine.depth_diffuse = settings.integer("engine.depth_diffuse");
   engine.depth_glossy = settings.integer("engine.depth_glossy");
@@ -248,6 +253,7 @@ Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrid
   recipe.engine = read_engine(settings);
   recipe.outputs = read_outputs(settings);
   recipe.rejected_limit = settings.number("engine.rejected_limit");
+  recipe.keep_sums = settings.boolean("engine.keep_film");
   recipe.keep_film = settings.boolean("outputs.keep_film");
   diagnostics.throw_if_any();
   recipe.settings = canonical_settings(settings, recipe);

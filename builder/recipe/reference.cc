@@ -65,9 +65,9 @@ std::string default_cell(const KeySpec& key) {
 std::string help_cell(const KeySpec& key) {
   std::string cell(key.help);
   if (!key.only_with.empty()) {
-    const std::size_t equals = key.only_with.find(" = ");
-    cell += fmt::format(". Only with `{}` = {}", key.only_with.substr(0, equals),
-                        literals(key.only_with.substr(equals + 3)));
+    const KeyCondition condition = condition_of(key);
+    cell += fmt::format(". Only with `{}` {} {}", condition.key,
+                        condition.wanted ? "=" : "!=", literals(condition.literals));
   }
   return cell;
 }

@@ -154,7 +154,7 @@ void Settings::check_effects() {
   for (const KeySpec& key : recipe_keys()) {
     const auto value = values_.find(key.name);
     if (value == values_.end() || applies(key)) continue;
-    const std::string_view chooser = key.only_with.substr(0, key.only_with.find(" = "));
+    const std::string_view chooser = condition_of(key).key;
     if (wrong_.contains(chooser)) continue;
     if (value->second.from_set || !given_by_set(chooser)) {
       complain(value->second, key.name,
@@ -169,8 +169,8 @@ void Settings::check_effects() {
 
 bool Settings::applies(const KeySpec& key) const {
   if (key.only_with.empty()) return true;
-  const std::size_t equals = key.only_with.find(" = ");
-  return is_choice(key.only_with.substr(equals + 3), literal(key.only_with.substr(0, equals)));
+  const KeyCondition condition = condition_of(key);
+  return is_choice(condition.literals, literal(condition.key)) == condition.wanted;
 }
 
 bool Settings::given_by_set(std::string_view key) const {

@@ -52,6 +52,7 @@ std::map<std::string, Hash128> probe_keys(const Recipe& recipe, Inputs& inputs,
     for (const ImageSpec& image : pair.images) {
       ImageSpec probed = image;
       probed.engine.spp = probe_samples(image.engine).high;
+      probed.engine.target.reset();
       try {
         keys[image.id] = probe_key(maker.keys(probed), recipe, device);
       } catch (const DamagedDatabase&) {

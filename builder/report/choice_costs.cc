@@ -44,6 +44,7 @@ class Choosing {
   Film picture(const Subject& subject, int spp, int number) const {
     EngineSettings engine = subject.engine;
     engine.spp = spp;
+    engine.target.reset();
     engine.seed = report_seed(subject.engine.seed, k_first_seed + number);
     return tracer_.trace(subject.camera, engine, stop_);
   }

@@ -85,6 +85,7 @@ class Ladder {
   Film trace(int spp, int number) const {
     EngineSettings engine = subject_.engine;
     engine.spp = spp;
+    engine.target.reset();
     engine.seed = report_seed(subject_.engine.seed, number);
     return tracer_.trace(subject_.camera, engine, stop_);
   }

@@ -25,9 +25,10 @@ constexpr int k_cold_spp = 1;
 class SharedRenderer : public Renderer {
  public:
   explicit SharedRenderer(Renderer& renderer) : renderer_(renderer) {}
-  Film trace(const ImageSpec& image, const std::function<void(const TraceProgress&)>& progress,
+  Film trace(const ImageSpec& image, FilmSums* kept,
+             const std::function<void(const TraceProgress&)>& progress,
              const std::atomic<bool>& stop) override {
-    return renderer_.trace(image, progress, stop);
+    return renderer_.trace(image, kept, progress, stop);
   }
   Geometry trace_geometry(const ImageSpec& image) override {
     return renderer_.trace_geometry(image);
@@ -74,6 +75,8 @@ class ProbeBuild {
                const std::filesystem::path& folder) {
     dataset_.recipe = recipe;
     dataset_.recipe.engine.spp = spp;
+    dataset_.recipe.engine.target.reset();
+    dataset_.recipe.keep_sums = false;
     // Identities do not depend on the other models: these alone expand to the same images.
     std::set<std::filesystem::path> models;
     for (const ImageSpec& image : images)

@@ -27,7 +27,8 @@ class FakeRenderer : public Renderer {
   };
   explicit FakeRenderer(Calls& calls) : calls_(calls) {}
 
-  Film trace(const ImageSpec& image, const std::function<void(const TraceProgress&)>& progress,
+  Film trace(const ImageSpec& image, FilmSums* /*kept*/,
+             const std::function<void(const TraceProgress&)>& progress,
              const std::atomic<bool>& stop) override {
     if (stop) fail(ErrorKind::cancelled, "stopped");
     if (image.id == calls_.fails_on) fail(ErrorKind::device, "the fake was told to fail");
@@ -40,6 +41,7 @@ class FakeRenderer : public Renderer {
     film.facts.samples = static_cast<std::uint64_t>(film.width) *
                          static_cast<std::uint64_t>(film.height) *
                          static_cast<std::uint64_t>(image.engine.spp);
+    film.traced_samples = film.facts.samples;
     if (const auto found = calls_.rejected.find(image.id); found != calls_.rejected.end())
       film.rejected_samples = film.facts.nan_samples = found->second;
     if (calls_.stop_after_one != nullptr) *calls_.stop_after_one = true;

@@ -60,6 +60,33 @@ TEST_F(KeysTest, NamesNeverMatter) {
   EXPECT_EQ(moved(before, keys()), (Moved{false, false, false}));
 }
 
+/// Pictures of one `kept` key go on from each other's films: what only says when to stop is not in
+/// it, whatever else there is.
+TEST_F(KeysTest, TheKeptKeyLeavesOutWhenToStop) {
+  const auto kept_with = [&](const std::function<void(EngineSettings&)>& change) {
+    const EngineSettings before = image_.engine;
+    change(image_.engine);
+    const Hash128 kept = keys().kept;
+    image_.engine = before;
+    return kept;
+  };
+  const auto nothing = [](EngineSettings&) {};
+  const Hash128 uniform = kept_with(nothing);
+  EXPECT_EQ(kept_with([](EngineSettings& e) { e.spp += 1; }), uniform);
+  EXPECT_NE(kept_with([](EngineSettings& e) { e.seed += 1; }), uniform);
+  EXPECT_NE(kept_with([](EngineSettings& e) { e.depth_total += 1; }), uniform);
+  EXPECT_NE(kept_with([](EngineSettings& e) { e.outlier_limit = 9; }), uniform);
+  image_.engine.target = ErrorTarget{};
+  const Hash128 scheduled = kept_with(nothing);
+  EXPECT_NE(scheduled, uniform);
+  EXPECT_EQ(kept_with([](EngineSettings& e) { e.target->error /= 2; }), scheduled);
+  EXPECT_EQ(kept_with([](EngineSettings& e) { e.target->max_spp *= 2; }), scheduled);
+  EXPECT_EQ(kept_with([](EngineSettings& e) { e.spp += 1; }), scheduled);
+  EXPECT_NE(kept_with([](EngineSettings& e) { e.target->tone_map.gamma = 1; }), scheduled);
+  image_.camera.fov_deg += 1;
+  EXPECT_NE(kept_with(nothing), scheduled);
+}
+
 TEST_F(KeysTest, EachSettingMovesWhatItCanChangeAndNothingElse) {
   const fs::path other_model = recipe_.models[1], other_material = recipe_.materials[1];
   struct Case {
@@ -84,6 +111,9 @@ TEST_F(KeysTest, EachSettingMovesWhatItCanChangeAndNothingElse) {
       {"width", [&] { image_.engine.width += 1; }, {true, true, true}, 4},
       {"spp", [&] { image_.engine.spp += 1; }, {true, false, true}, 4},
       {"seed", [&] { image_.engine.seed += 1; }, {true, false, true}, 4},
+      {"outlier limit", [&] { image_.engine.outlier_limit = 9; }, {true, false, true}, 4},
+      {"rejected limit", [&] { recipe_.rejected_limit = 0.5; }, {false, false, false}, -1},
+      {"error target", [&] { image_.engine.target = ErrorTarget{}; }, {true, false, true}, 4},
       {"math", [&] { image_.engine.math = MathMode::fast; }, {true, false, true}, 4},
       {"tone map",
        [&] { recipe_.outputs.tone_map = ToneMap{.scale = 3}; },

@@ -39,8 +39,8 @@ TEST(RecipeKeys, HaveDefaultsThatTheyAllowThemselves) {
 TEST(RecipeKeys, DependOnChoicesThatExist) {
   for (const KeySpec& key : recipe_keys()) {
     if (key.only_with.empty()) continue;
-    const std::size_t equals = key.only_with.find(" = ");
-    const KeySpec* chooser = find_key(key.only_with.substr(0, equals));
+    const KeyCondition condition = condition_of(key);
+    const KeySpec* chooser = find_key(condition.key);
     ASSERT_NE(chooser, nullptr) << key.name;
     int matched = 0, literals = 1;
     for (const char c : key.only_with)
@@ -48,7 +48,7 @@ TEST(RecipeKeys, DependOnChoicesThatExist) {
     std::string_view rest = chooser->choices;
     while (!rest.empty()) {
       const std::size_t end = rest.find(" | ");
-      matched += is_choice(key.only_with.substr(equals + 3), rest.substr(0, end)) ? 1 : 0;
+      matched += is_choice(condition.literals, rest.substr(0, end)) ? 1 : 0;
       rest.remove_prefix(end == rest.npos ? rest.size() : end + 3);
     }
     EXPECT_EQ(matched, literals) << key.name;
@@ -63,6 +63,10 @@ TEST(RecipeKeys, HaveTheDefaultsOfTheStructsTheyFill) {
   EXPECT_EQ(recipe.engine.width, engine.width);
   EXPECT_EQ(recipe.engine.height, engine.height);
   EXPECT_EQ(recipe.engine.spp, engine.spp);
+  EXPECT_FALSE(recipe.engine.target);
+  EXPECT_EQ(folder.read("engine.error = 0.5").engine.target->max_spp, ErrorTarget{}.max_spp);
+  EXPECT_EQ(recipe.engine.outlier_limit, engine.outlier_limit);
+  EXPECT_EQ(recipe.rejected_limit, Recipe{}.rejected_limit);
   EXPECT_EQ(recipe.engine.depth_total, engine.depth_total);
   EXPECT_EQ(recipe.engine.depth_diffuse, engine.depth_diffuse);
   EXPECT_EQ(recipe.engine.depth_glossy, engine.depth_glossy);

@@ -146,10 +146,11 @@ TEST(Calibration, ProbesAreKeptWhole) {
 class TimedRenderer : public FakeRenderer {
  public:
   using FakeRenderer::FakeRenderer;
-  Film trace(const ImageSpec& image, const std::function<void(const TraceProgress&)>& progress,
+  Film trace(const ImageSpec& image, FilmSums* kept,
+             const std::function<void(const TraceProgress&)>& progress,
              const std::atomic<bool>& stop) override {
     load(image);
-    Film film = FakeRenderer::trace(image, progress, stop);
+    Film film = FakeRenderer::trace(image, kept, progress, stop);
     clock += 0.002 * image.engine.spp;
     film.relative_error = 0.8 / std::sqrt(image.engine.spp);
     return film;

@@ -206,8 +206,9 @@ TEST_F(ManifestTest, NamesLineAndFieldOfEveryDamage) {
     const std::string what = error.what();
     EXPECT_EQ(error.kind(), ErrorKind::asset);
     EXPECT_THAT(what, HasSubstr("images.jsonl:1: spp must be a count, got -1\n"));
-    EXPECT_THAT(what, HasSubstr("images.jsonl:1: film.most_spp must be a count or a number, got "
-                                "4294967296\n"));
+    EXPECT_THAT(what,
+                HasSubstr("images.jsonl:1: film.most_spp must be a count, a number or a truth, "
+                          "got 4294967296\n"));
     EXPECT_THAT(
         what, HasSubstr("images.jsonl:1: render_key must be 32 hexadecimal digits, got \"zz\"\n"));
     EXPECT_THAT(what, HasSubstr("images.jsonl:1: camera_to_world must be rows of numbers, got "));
