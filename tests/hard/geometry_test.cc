@@ -137,6 +137,32 @@ TEST(Geometry, ABoxOnTheGroundLetsNoLightUnderIt) {
   hard::everywhere(p, [](const Film& film) { EXPECT_EQ(hard::mean_of(film), 0.0); });
 }
 
+TEST(Geometry, AWallStandsOnAGroundOfAnySize) {
+  // The lowest half millimetre of a wall of 0.5 on a black ground under a sky of 1 sees half of the
+  // sky. A ray down to the ground may start nearer to it than floats tell depths of its corners.
+  for (const float half : {5.0f, 500.0f, 5000.0f})
+    for (const double turn : {0.0, 0.3}) {
+      Picture p = hard::deep_picture(8, 256);
+      p.name = "ground of " + std::to_string(half) + " m turned by " + std::to_string(turn);
+      p.engine.depth_total = 1;
+      const auto c = half * static_cast<float>(std::cos(turn));
+      const auto s = half * static_cast<float>(std::sin(turn));
+      const float ground = -0.0574f;
+      pictures::add_object(p.scene, pictures::quad({0.01f, 0.02f, ground}, {c, s, 0}, {-s, c, 0}),
+                           pictures::add_matte(p.scene, {0, 0, 0}));
+      pictures::add_object(p.scene, pictures::box({0, 0, ground + 0.08f}, {0.08f, 0.05f, 0.08f}),
+                           pictures::add_matte(p.scene, {0.5f, 0.5f, 0.5f}));
+      p.scene.lights.push_back(pictures::constant_light({1, 1, 1}));
+      p.camera.position = {0, -0.15, double{ground} + 0.00025};
+      p.camera.target = {0, -0.05, double{ground} + 0.00025};
+      p.camera.fov_deg = 2 * std::atan(0.00025 / 0.1) * 180 / M_PI;
+      hard::everywhere(p, [](const Film& film) {
+        // 16,384 samples of 0 or 0.5: 4 sigma is 0.008.
+        EXPECT_NEAR(hard::mean_of(film), 0.25, 0.01);
+      });
+    }
+}
+
 TEST(Geometry, CameraInsideABody) {
   // At the centre of a glass sphere every way out is square to it: radiance is n^2 of the sky's.
   Picture glass = hard::deep_picture(8, 64);
