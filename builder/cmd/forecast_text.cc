@@ -45,8 +45,9 @@ std::string pairs_text(const Forecast& forecast) {
                   "material", material, "to make", "samples", "error", "s an image");
   for (const PairForecast& pair : forecast.pairs)
     text += fmt::format(
-        "{:{}}  {:{}}  {:>9}  {:>8.4g}  {:>8}  {:>10.3g}\n", pair.environment, environment,
-        pair.material, material, fmt::format("{}/{}", pair.made, pair.images), pair.spp,
+        "{:{}}  {:{}}  {:>9}  {:>8}  {:>8}  {:>10.3g}\n", pair.environment, environment,
+        pair.material, material, fmt::format("{}/{}", pair.made, pair.images),
+        pair.spp < 100 ? fmt::format("{:.1f}", pair.spp) : fmt::format("{:.0f}", pair.spp),
         pair.error > 0 ? fmt::format("{:.2g} %", 100 * pair.error) : "?", pair.seconds_an_image);
   return text;
 }

@@ -101,6 +101,7 @@ Hash128 probe_key(const ImageKeys& keys, const Recipe& recipe, const std::string
   text.add("version", k_version);
   text.add("render", keys.render.hex());
   text.add("files", keys.files.hex());
+  text.add("low_spp", probe_samples(recipe.engine).low);
   text.add("keep_film", recipe.keep_film);
   text.add("device", device);
   return hash_text(text.text());

@@ -18,10 +18,27 @@ namespace {
 constexpr double k_steepest = -1, k_flattest = -1.0 / 3;
 /// Scatter assumed where every pair has but one probe.
 constexpr double k_assumed_scatter = 0.3;
+constexpr double k_assumed_slope_scatter = 0.1;
 constexpr int k_assumed_freedom = 10;
 
 double squared(double x) {
   return x * x;
+}
+
+bool tells_slope(const Probe& probe) {
+  return probe.low_error && probe.high_error && *probe.low_error > 0 && *probe.high_error > 0;
+}
+
+double slope_of(const Probe& probe) {
+  return std::log(*probe.high_error / *probe.low_error) /
+         std::log(double(probe.high_spp) / probe.low_spp);
+}
+
+std::vector<double> slopes_of(const std::vector<Probe>& probes) {
+  std::vector<double> slopes;
+  for (const Probe& probe : probes)
+    if (tells_slope(probe)) slopes.push_back(slope_of(probe));
+  return slopes;
 }
 
 double spp_of(const std::optional<ErrorLaw>& law, const Samples& samples) {
@@ -75,13 +92,47 @@ class Total {
   int freedom_ = 0;
 };
 
+/// Of the probes' slopes about the mean of their pair, pooled over pairs.
+struct SlopeScatter {
+  double deviation = k_assumed_slope_scatter;
+  int freedom = k_assumed_freedom;
+};
+
 /// Times of images and of scenes scatter apart, and so do sizes.
 struct Totals {
   Total images, scenes, bytes;
+  double slope_variance = 0;  ///< of the time, for one standard deviation of a slope
 };
 
 Interval interval_of(double value, double half) {
   return {value, std::max(0.0, value - half), value + half};
+}
+
+SlopeScatter slope_scatter(const std::vector<ProbedWork>& work) {
+  double squares = 0;
+  int freedom = 0;
+  for (const ProbedWork& pair : work) {
+    const std::vector<double> slopes = slopes_of(pair.probes);
+    if (slopes.size() < 2) continue;
+    const int more = static_cast<int>(slopes.size()) - 1;
+    squares += squared(deviation_of(slopes)) * more;
+    freedom += more;
+  }
+  if (freedom == 0) return {};
+  return {std::sqrt(squares / freedom), freedom};
+}
+
+/// How much a pair's time changes with its slope: n = (error / c)^(1 / slope) turns about the
+/// samples that were probed.
+double time_per_slope(const ProbedWork& pair, const std::vector<std::optional<ErrorLaw>>& laws,
+                      const std::vector<double>& spp) {
+  double sum = 0;
+  for (std::size_t i = 0; i < pair.probes.size(); ++i) {
+    if (!laws[i] || spp[i] <= 1) continue;
+    const Probe& probe = pair.probes[i];
+    sum += probe.sample_seconds * spp[i] * std::log(spp[i] / probe.high_spp) / laws[i]->slope;
+  }
+  return static_cast<double>(pair.work.trace) * sum / static_cast<double>(pair.probes.size());
 }
 
 PairForecast forecast_pair(const ProbedWork& pair, const Samples& samples, Totals& totals,
@@ -107,6 +158,10 @@ PairForecast forecast_pair(const ProbedWork& pair, const Samples& samples, Total
     scenes.push_back(probe.scene_seconds);
     if (laws[i]) squares.push_back(squared(laws[i]->error(spp.back())));
   }
+  if (samples.error)
+    totals.slope_variance +=
+        squared(time_per_slope(pair, laws, spp)) /
+        static_cast<double>(std::max<std::size_t>(1, slopes_of(pair.probes).size()));
   out.spp = mean_of(spp);
   out.seconds_an_image = mean_of(traced);
   if (!squares.empty()) out.error = std::sqrt(mean_of(squares));
@@ -140,15 +195,10 @@ double ErrorLaw::spp_for(double error) const {
 }
 
 std::vector<std::optional<ErrorLaw>> error_laws(const std::vector<Probe>& probes) {
-  std::vector<double> slopes;
-  const auto known = [](const Probe& probe) { return probe.low_error && probe.high_error; };
-  for (const Probe& probe : probes)
-    if (known(probe) && *probe.low_error > 0 && *probe.high_error > 0)
-      slopes.push_back(std::log(*probe.high_error / *probe.low_error) /
-                       std::log(double(probe.high_spp) / probe.low_spp));
+  const std::vector<double> slopes = slopes_of(probes);
   std::vector<std::optional<ErrorLaw>> laws;
   for (const Probe& probe : probes) {
-    if (!known(probe)) {
+    if (!probe.low_error || !probe.high_error) {
       laws.emplace_back();
       continue;
     }
@@ -211,8 +261,12 @@ Forecast forecast(const std::vector<ProbedWork>& work, const Samples& samples) {
   for (const ProbedWork& pair : work)
     out.pairs.push_back(forecast_pair(pair, samples, totals, out.bytes_by_kind));
   const double seconds = totals.images.value() + totals.scenes.value();
-  out.seconds = interval_of(
-      seconds, std::hypot(totals.images.half(), totals.scenes.half(), k_drift * seconds));
+  const SlopeScatter slopes = slope_scatter(work);
+  const double of_slopes =
+      student_t95(slopes.freedom) * slopes.deviation * std::sqrt(totals.slope_variance);
+  out.seconds =
+      interval_of(seconds, std::hypot(std::hypot(totals.images.half(), totals.scenes.half()),
+                                      k_drift * seconds, of_slopes));
   out.bytes = interval_of(totals.bytes.value(), totals.bytes.half());
   return out;
 }

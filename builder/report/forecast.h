@@ -67,8 +67,9 @@ struct ErrorLaw {
 std::vector<std::optional<ErrorLaw>> error_laws(const std::vector<Probe>& probes);
 
 /// Time and disk of the work. The interval holds the scatter of the probes (Student's t, pooled
-/// over pairs, with the finite number of images taken into account) and k_drift, by which a device
-/// is slower or faster from one minute to another.
+/// over pairs, with the finite number of images taken into account); for an error, that of the
+/// slopes too, which counts for more the farther it is from what was probed; and k_drift, by which
+/// a device is slower or faster from one minute to another.
 Forecast forecast(const std::vector<ProbedWork>& work, const Samples& samples);
 inline constexpr double k_drift = 0.08;
 

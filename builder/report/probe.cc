@@ -157,9 +157,9 @@ double wall_clock() {
 
 ProbeSamples probe_samples(const EngineSettings& engine) {
   const double pixels = double(engine.width) * engine.height;
-  const auto fitting = static_cast<unsigned>(std::clamp(k_most_samples / pixels, 8.0, 64.0));
+  const auto fitting = static_cast<unsigned>(std::clamp(k_most_samples / pixels, 16.0, 64.0));
   const int high = static_cast<int>(std::bit_floor(fitting));
-  return {high / 4, high};
+  return {high / 8, high};
 }
 
 std::vector<Probe> probe_images(const Recipe& recipe, Inputs& inputs,

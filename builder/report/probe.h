@@ -38,9 +38,10 @@ struct ProbeWatch {
 };
 double wall_clock();
 
-/// The samples a probe takes: few enough that a probe is short, and enough that its error is known.
+/// The samples a probe takes: few enough that a probe is short, the fewer at least 2 so that its
+/// error is known, and eight times apart so that the slope between them is.
 struct ProbeSamples {
-  int low = 4, high = 16;
+  int low = 2, high = 16;
 };
 ProbeSamples probe_samples(const EngineSettings& engine);
 

@@ -80,6 +80,24 @@ TEST(Forecast, AnErrorTellsTheSamplesOfEachImage) {
   EXPECT_NEAR(f.seconds.value, 0.5 + 10 * 6.4, 1e-6);
 }
 
+TEST(Forecast, AnUncertainSlopeCountsWithTheDistance) {
+  // Slopes of -0.5 and -0.6: a deviation of 0.0707, and of 0.05 for their mean, -0.55.
+  Probe steep = probe(0, 0.01, 0.8);
+  steep.low_error = *steep.high_error * std::pow(4, 0.6);
+  ProbedWork w = work(2, {probe(0, 0.01, 0.8), steep});
+  w.work.scenes = 0;
+  // Both images were probed: nothing scatters but the slopes. At 16 samples the error is 0.2.
+  const auto half = [&](double error) {
+    const Interval seconds = forecast({w}, {error, 0}).seconds;
+    const double other = k_drift * seconds.value;
+    return std::sqrt((seconds.high - seconds.value) * (seconds.high - seconds.value) -
+                     other * other);
+  };
+  EXPECT_NEAR(half(0.2), 0, 1e-6);
+  const double n = 16 * std::pow(0.2 / 0.05, 1 / 0.55);
+  EXPECT_NEAR(half(0.05), 12.706 * 0.05 * 2 * 0.01 * n * std::log(n / 16) / 0.55, 1e-3);
+}
+
 TEST(Forecast, ABudgetBuysTheErrorWhoseTimeItIs) {
   const std::vector<ProbedWork> all{work(10, {probe(0.2, 0.01, 0.8), probe(0.2, 0.02, 0.9)}),
                                     work(20, {probe(0.1, 0.03, 1.6), probe(0.1, 0.02, 1.5)})};

@@ -148,6 +148,14 @@ TEST(Page, NeedsNothingElse) {
   EXPECT_THAT(page, HasSubstr("download=\"mugs.csv\" href=\"data:text/csv;charset=utf-8;base64,"));
 }
 
+TEST(Page, NoChartHoldsMoreThanItCanTellApart) {
+  Accuracy a = accuracy();
+  for (int i = 0; i < 8; ++i)
+    a.pairs.push_back(pair("m" + std::to_string(i)));
+  const std::string page = accuracy_page(a, Against::spp, "", "r.csv");
+  EXPECT_EQ(occurrences(page, "<p class=\"legend\">"), 2U * 3U);
+}
+
 TEST(Page, PlotsAgainstWhatWasAskedFor) {
   const Accuracy a = accuracy();
   const auto page = [&](Against against) { return accuracy_page(a, against, "", "r.csv"); };
