@@ -53,15 +53,16 @@ Wish wish_of(const Arguments& arguments) {
   return wish;
 }
 
-Calibration calibration_of(const Arguments& arguments, const Dataset& dataset, Inputs& inputs) {
+Calibration calibration_of(const Arguments& arguments, const Dataset& dataset, Inputs& inputs,
+                           bool by_error) {
   TracerOptions options;
   options.device = arguments.device;
   const auto renderer = make_tracer_renderer(inputs, dataset.recipe, options);
   const std::filesystem::path cache = default_cache_folder();
   const auto told = [](const std::string& what) { fmt::print(stderr, "{}\n", what); };
-  return calibrate(dataset.recipe, inputs, *renderer, CalibrationCache(cache),
-                   arguments.recalibrate, cache / fmt::format("calibrating-{}", ::getpid()),
-                   {told, wall_clock, stop_on_signal()});
+  return calibrate(
+      dataset.recipe, inputs, *renderer, CalibrationCache(cache), {arguments.recalibrate, by_error},
+      cache / fmt::format("calibrating-{}", ::getpid()), {told, wall_clock, stop_on_signal()});
 }
 
 /// What was asked, as a sentence, and the forecast that answers it; none where no error fits into
@@ -80,16 +81,20 @@ Answer answer(const Wish& wish, const Recipe& recipe, const std::vector<ProbedWo
   if (wish.budget_seconds) {
     const std::optional<Interval> error = error_for(work, *wish.budget_seconds);
     if (!error)
-      return {"no error can be had for this budget: one sample a pixel takes longer", {}, {}};
+      return {"no error can be had for this budget: the least samples take longer", {}, {}};
     return {fmt::format("the budget buys an error of {} ({} to {})", percent(error->value),
                         percent(error->low), percent(error->high)),
             error, forecast(work, {error->value, 0})};
   }
-  // What engine.error will take is not foretold: only what it may.
-  const bool capped = recipe.engine.target.has_value();
-  const Samples samples{wish.error, capped ? recipe.engine.target->max_spp : recipe.engine.spp};
-  return {wish.error ? fmt::format("every picture to an error of {}", percent(*wish.error))
-                     : fmt::format("{}{} samples a pixel", capped ? "at most " : "", samples.spp),
+  Samples samples{wish.error, recipe.engine.spp};
+  const std::optional<ErrorTarget>& target = recipe.engine.target;
+  if (target) {
+    samples.error = samples.error.value_or(target->error);
+    samples.most_spp = target->max_spp;
+  }
+  return {samples.error ? fmt::format("every picture to an error of {} (engine.error)",
+                                      percent(*samples.error))
+                        : fmt::format("{} samples a pixel", recipe.engine.spp),
           std::nullopt, forecast(work, samples)};
 }
 
@@ -125,7 +130,8 @@ int run_plan(const Arguments& arguments) {
   }
   bool answered = true;
   if (wish.any) {
-    const Calibration calibration = calibration_of(arguments, dataset, inputs);
+    const Calibration calibration = calibration_of(
+        arguments, dataset, inputs, wish.all_images() || dataset.recipe.engine.target);
     const Answer found =
         answer(wish, dataset.recipe, join(work_of(plan, dataset.recipe.keep_film), calibration));
     answered = found.forecast.has_value();

@@ -28,6 +28,10 @@ class RealSceneTracer : public SceneTracer {
              const std::atomic<bool>& stop) override {
     return tracer_.trace(camera, engine, {}, &stop);
   }
+  void trace_on(const Camera& camera, const EngineSettings& engine, FilmSums& sums,
+                const std::atomic<bool>& stop) override {
+    tracer_.trace(camera, engine, {}, &stop, &sums);
+  }
   Geometry trace_geometry(const Camera& camera, int width, int height) override {
     return tracer_.trace_geometry(camera, width, height);
   }

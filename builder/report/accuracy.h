@@ -7,6 +7,7 @@
 #include "builder/report/fit.h"
 #include "builder/report/geometry_errors.h"
 #include "builder/report/image_errors.h"
+#include "tracer/render/film.h"
 
 #include <array>
 #include <atomic>
@@ -27,6 +28,9 @@ class SceneTracer {
   virtual void set_scene(const Scene& scene) = 0;
   virtual Film trace(const Camera& camera, const EngineSettings& engine,
                      const std::atomic<bool>& stop) = 0;
+  /// Goes on from `sums`, a film of this picture with fewer samples or an empty one.
+  virtual void trace_on(const Camera& camera, const EngineSettings& engine, FilmSums& sums,
+                        const std::atomic<bool>& stop) = 0;
   virtual Geometry trace_geometry(const Camera& camera, int width, int height) = 0;
   virtual std::string device() const = 0;
   /// Seconds of the wall clock.
@@ -96,6 +100,8 @@ struct PairAccuracy {
   std::vector<Target> targets;
   double reference_error = 0;      ///< relative RMS of the reference, by its two halves
   std::map<Metric, double> floor;  ///< what SSIM and FLIP say of the reference's halves
+  int plain_sums_spp = 0;
+  double plain_sums = 0;  ///< error that plain float sums would add, at plain_sums_spp
   std::vector<GeometryRung> geometry;
   std::vector<ChoiceCost> choices;
 };

@@ -119,6 +119,8 @@ std::string to_json_text(const Probe& probe) {
   put_optional(object, "high_error", probe.high_error);
   for (const auto& [kind, size] : probe.bytes)
     object["bytes"][kind] = {size.low, size.high};
+  if (probe.target)
+    object["target"] = {probe.target->spp, probe.target->error, probe.target->sample_seconds};
   return object.dump() + "\n";
 }
 
@@ -136,6 +138,11 @@ std::optional<Probe> probe_from_json(const std::string& text) {
     probe.high_error = get_optional(object, "high_error");
     for (const auto& [kind, size] : object.at("bytes").items())
       probe.bytes[kind] = {size.at(0).get<double>(), size.at(1).get<double>()};
+    if (object.contains("target")) {
+      const nlohmann::json& target = object.at("target");
+      probe.target = {target.at(0).get<double>(), target.at(1).get<double>(),
+                      target.at(2).get<double>()};
+    }
     if (probe.low_spp < 1 || probe.high_spp <= probe.low_spp) return std::nullopt;
     return probe;
   } catch (const nlohmann::json::exception&) {
@@ -144,7 +151,7 @@ std::optional<Probe> probe_from_json(const std::string& text) {
 }
 
 Calibration calibrate(const Recipe& recipe, Inputs& inputs, Renderer& renderer,
-                      const CalibrationCache& cache, bool again,
+                      const CalibrationCache& cache, const CalibrationWish& wish,
                       const std::filesystem::path& scratch, const ProbeWatch& watch) {
   Calibration calibration;
   calibration.device = renderer.device();
@@ -155,15 +162,15 @@ Calibration calibrate(const Recipe& recipe, Inputs& inputs, Renderer& renderer,
   std::vector<ImageSpec> missing;
   for (const ImageSpec& image : by_turns(wanted)) {
     if (!keys.contains(image.id)) continue;
-    const std::optional<Probe> known = again ? std::nullopt : cache.find(keys.at(image.id));
-    if (known)
+    const std::optional<Probe> known = wish.again ? std::nullopt : cache.find(keys.at(image.id));
+    if (known && (known->target || !wish.by_error))
       probes[image.id] = *known;
     else
       missing.push_back(image);
   }
   const Scratch work(scratch);
   const std::vector<Probe> found =
-      probe_images(recipe, inputs, missing, renderer, work.folder(), watch);
+      probe_images(recipe, inputs, missing, renderer, work.folder(), wish.by_error, watch);
   for (std::size_t i = 0; i < missing.size(); ++i) {
     cache.put(keys.at(missing[i].id), found[i]);
     probes[missing[i].id] = found[i];

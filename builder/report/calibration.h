@@ -41,10 +41,16 @@ struct Calibration {
   std::string device;
 };
 
-/// Probes of the recipe's images, from the cache where they are there. `again`: measure all anew.
+/// What is to be measured.
+struct CalibrationWish {
+  bool again = false;     ///< all anew, not from the cache
+  bool by_error = false;  ///< with a TargetProbe each
+};
+
+/// Probes of the recipe's images, from the cache where they are there.
 /// Images that cannot be read are left out. Works in `scratch`, which is removed afterwards.
 Calibration calibrate(const Recipe& recipe, Inputs& inputs, Renderer& renderer,
-                      const CalibrationCache& cache, bool again,
+                      const CalibrationCache& cache, const CalibrationWish& wish,
                       const std::filesystem::path& scratch, const ProbeWatch& watch);
 
 }  // namespace ds

@@ -81,6 +81,8 @@ void add_geometry(Lines& lines, const PairAccuracy& pair) {
 }
 
 void add_choices(Lines& lines, const PairAccuracy& pair) {
+  if (pair.plain_sums_spp > 0)
+    lines.add("choice", "sums plain", "bias", {double(pair.plain_sums_spp), {}}, pair.plain_sums);
   for (const ChoiceCost& cost : pair.choices) {
     const std::string name = cost.choice.group + " " + cost.choice.name;
     lines.add("choice", name, "time_ratio", {}, cost.time);

@@ -2,6 +2,7 @@
 #include "builder/report/forecast.h"
 
 #include "tracer/base/error.h"
+#include "tracer/render/schedule.h"
 
 #include <algorithm>
 #include <charconv>
@@ -20,6 +21,9 @@ constexpr double k_steepest = -1, k_flattest = -1.0 / 3;
 constexpr double k_assumed_scatter = 0.3;
 constexpr double k_assumed_slope_scatter = 0.1;
 constexpr int k_assumed_freedom = 10;
+/// Every picture has a smaller error with its least samples.
+constexpr double k_any_error = 1e6;
+constexpr double k_first_spp = Schedule::k_first_spp;
 
 double squared(double x) {
   return x * x;
@@ -43,7 +47,7 @@ std::vector<double> slopes_of(const std::vector<Probe>& probes) {
 
 double spp_of(const std::optional<ErrorLaw>& law, const Samples& samples) {
   if (!samples.error) return samples.spp;
-  return law ? law->spp_for(*samples.error) : 1;
+  return law ? std::min(law->spp_for(*samples.error), samples.most_spp) : 1;
 }
 
 /// Size of a file, with the trend from few to more samples carried on by logarithm: less noise
@@ -122,6 +126,11 @@ SlopeScatter slope_scatter(const std::vector<ProbedWork>& work) {
   return {std::sqrt(squares / freedom), freedom};
 }
 
+/// Seconds of a sample of every pixel.
+double sample_seconds(const Probe& probe, bool by_error) {
+  return by_error && probe.target ? probe.target->sample_seconds : probe.sample_seconds;
+}
+
 /// How much a pair's time changes with its slope: n = (error / c)^(1 / slope) turns about the
 /// samples that were probed.
 double time_per_slope(const ProbedWork& pair, const std::vector<std::optional<ErrorLaw>>& laws,
@@ -130,14 +139,16 @@ double time_per_slope(const ProbedWork& pair, const std::vector<std::optional<Er
   for (std::size_t i = 0; i < pair.probes.size(); ++i) {
     if (!laws[i] || spp[i] <= 1) continue;
     const Probe& probe = pair.probes[i];
-    sum += probe.sample_seconds * spp[i] * std::log(spp[i] / probe.high_spp) / laws[i]->slope;
+    const double probed = probe.target ? probe.target->spp : probe.high_spp;
+    sum += sample_seconds(probe, true) * spp[i] * std::log(spp[i] / probed) / laws[i]->slope;
   }
   return static_cast<double>(pair.work.trace) * sum / static_cast<double>(pair.probes.size());
 }
 
 PairForecast forecast_pair(const ProbedWork& pair, const Samples& samples, Totals& totals,
                            std::map<std::string, double>& by_kind) {
-  const std::vector<std::optional<ErrorLaw>> laws = error_laws(pair.probes);
+  const bool by_error = samples.error.has_value();
+  const std::vector<std::optional<ErrorLaw>> laws = error_laws(pair.probes, by_error);
   PairForecast out{pair.work.environment,
                    pair.work.material,
                    pair.work.images,
@@ -153,7 +164,7 @@ PairForecast forecast_pair(const ProbedWork& pair, const Samples& samples, Total
   for (std::size_t i = 0; i < pair.probes.size(); ++i) {
     const Probe& probe = pair.probes[i];
     spp.push_back(spp_of(laws[i], samples));
-    traced.push_back(probe.image_seconds + probe.sample_seconds * spp.back());
+    traced.push_back(probe.image_seconds + sample_seconds(probe, by_error) * spp.back());
     remade.push_back(probe.image_seconds);
     scenes.push_back(probe.scene_seconds);
     if (laws[i]) squares.push_back(squared(laws[i]->error(spp.back())));
@@ -191,10 +202,10 @@ double ErrorLaw::error(double spp) const {
 
 double ErrorLaw::spp_for(double error) const {
   DS_ASSERT(error > 0);
-  return std::max(1.0, std::pow(error / at_one, 1 / slope));
+  return std::max(least_spp, std::pow(error / at_one, 1 / slope));
 }
 
-std::vector<std::optional<ErrorLaw>> error_laws(const std::vector<Probe>& probes) {
+std::vector<std::optional<ErrorLaw>> error_laws(const std::vector<Probe>& probes, bool by_error) {
   const std::vector<double> slopes = slopes_of(probes);
   std::vector<std::optional<ErrorLaw>> laws;
   for (const Probe& probe : probes) {
@@ -205,6 +216,10 @@ std::vector<std::optional<ErrorLaw>> error_laws(const std::vector<Probe>& probes
     ErrorLaw law;
     if (!slopes.empty()) law.slope = std::clamp(mean_of(slopes), k_steepest, k_flattest);
     law.at_one = *probe.high_error * std::pow(probe.high_spp, -law.slope);
+    if (by_error && probe.target) {
+      law.at_one = probe.target->error * std::pow(probe.target->spp, -law.slope);
+      law.least_spp = k_first_spp;
+    }
     laws.emplace_back(law);
   }
   return laws;
@@ -273,12 +288,12 @@ Forecast forecast(const std::vector<ProbedWork>& work, const Samples& samples) {
 
 std::optional<Interval> error_for(const std::vector<ProbedWork>& work, double seconds) {
   const auto knows_error = [](const ProbedWork& pair) {
-    for (const auto& law : error_laws(pair.probes))
+    for (const auto& law : error_laws(pair.probes, true))
       if (!law) return false;
     return true;
   };
   if (work.empty() || !std::all_of(work.begin(), work.end(), knows_error)) return std::nullopt;
-  if (forecast(work, {std::nullopt, 1}).seconds.value > seconds) return std::nullopt;
+  if (forecast(work, {k_any_error, 1}).seconds.value > seconds) return std::nullopt;
   // Time falls as the error grows: halve the range of its logarithm until it is narrow.
   const auto least_error = [&](double Interval::*bound) {
     double low = std::log(1e-6);

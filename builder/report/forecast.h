@@ -28,8 +28,9 @@ std::vector<PairWork> work_of(const Plan& plan, bool keep_film);
 
 /// How many samples the images get.
 struct Samples {
-  std::optional<double> error;  ///< as many as it takes to this relative error, image by image
+  std::optional<double> error;  ///< as many as engine.error takes to this one, image by image
   int spp = 1;                  ///< without: this number for all
+  double most_spp = 1 << 24;    ///< engine.max_spp
 };
 
 /// What is foretold of one pair.
@@ -37,7 +38,8 @@ struct PairForecast {
   std::string environment, material;
   std::uint64_t images = 0, made = 0;
   double spp = 0;               ///< mean
-  double error = 0;             ///< RMS relative error; 0 where no probe could tell
+  double error = 0;             ///< RMS relative error (by error: the developed picture's, upper
+                                ///< end); 0 where no probe could tell
   double seconds_an_image = 0;  ///< mean, without its scene
 };
 
@@ -59,23 +61,26 @@ std::vector<ProbedWork> join(const std::vector<PairWork>& work, const Calibratio
 /// Error of an image against samples: c n^slope, the slope that of all its pair's probes.
 struct ErrorLaw {
   double at_one = 0, slope = -0.5;  ///< at_one = 0: a picture without noise
+  double least_spp = 1;
   double error(double spp) const;
-  /// At least 1.
+  /// At least least_spp.
   double spp_for(double error) const;
 };
-/// One for each probe that knows its errors; others get none.
-std::vector<std::optional<ErrorLaw>> error_laws(const std::vector<Probe>& probes);
+/// One for each probe that knows its errors; others get none. `by_error`: of what engine.error
+/// makes, where that was probed: the same slope through the error reached, and at least 16 samples.
+std::vector<std::optional<ErrorLaw>> error_laws(const std::vector<Probe>& probes, bool by_error);
 
 /// Time and disk of the work. The interval holds the scatter of the probes (Student's t, pooled
 /// over pairs, with the finite number of images taken into account); for an error, that of the
 /// slopes too, which counts for more the farther it is from what was probed; and k_drift, by which
 /// a device is slower or faster from one minute to another.
 Forecast forecast(const std::vector<ProbedWork>& work, const Samples& samples);
-inline constexpr double k_drift = 0.08;
+/// Between calibrating and building on a machine that others used too it was 10 to 26 %.
+inline constexpr double k_drift = 0.15;
 
 /// The least error that can be had within `seconds`, where every picture gets the same error; low
-/// and high are what the ends of the time's interval buy. Nothing where one sample a pixel takes
-/// longer, or where no image's error is known.
+/// and high are what the ends of the time's interval buy. Nothing where the least
+/// samples a pixel take longer, or where no image's error is known.
 std::optional<Interval> error_for(const std::vector<ProbedWork>& work, double seconds);
 
 /// "8h", "90m", "45s", "1h30m", "2.5h" in seconds. Nothing for any other text or 0.

@@ -2,6 +2,7 @@
 #include "builder/report/ladder.h"
 
 #include "builder/report/flip.h"
+#include "builder/report/plain_sums.h"
 #include "builder/report/ssim.h"
 #include "tracer/base/error.h"
 #include "tracer/base/hash.h"
@@ -16,6 +17,8 @@ namespace {
 /// Numbers of the pictures that are references; rungs count from 0.
 constexpr int k_reference_a = 1'000'000;
 constexpr int k_reference_b = 1'000'001;
+/// Each is a launch of its own.
+constexpr int k_most_plain_samples = 256;
 
 /// Both halves and their mean, developed.
 struct DevelopedReference {
@@ -83,11 +86,17 @@ class Ladder {
       : tracer_(tracer), subject_(subject), tone_map_(tone_map), stop_(stop) {}
 
   Film trace(int spp, int number) const {
-    EngineSettings engine = subject_.engine;
-    engine.spp = spp;
-    engine.target.reset();
-    engine.seed = report_seed(subject_.engine.seed, number);
-    return tracer_.trace(subject_.camera, engine, stop_);
+    return tracer_.trace(subject_.camera, engine(spp, number), stop_);
+  }
+
+  double plain_sums(int spp) const {
+    PlainSums plain;
+    FilmSums film;
+    for (int n = 1; n <= spp; ++n) {
+      tracer_.trace_on(subject_.camera, engine(n, 0), film, stop_);
+      plain.add(film);
+    }
+    return plain.relative_error();
   }
 
   DevelopedReference reference(int spp) const {
@@ -120,6 +129,14 @@ class Ladder {
   }
 
  private:
+  EngineSettings engine(int spp, int number) const {
+    EngineSettings engine = subject_.engine;
+    engine.spp = spp;
+    engine.target.reset();
+    engine.seed = report_seed(subject_.engine.seed, number);
+    return engine;
+  }
+
   SceneTracer& tracer_;
   const Subject& subject_;
   const ToneMap& tone_map_;
@@ -163,6 +180,8 @@ void measure_ladder(PairAccuracy& pair, SceneTracer& tracer, const Subject& subj
   if (const auto similarity = ssim(reference.a, reference.b))
     pair.floor[Metric::ssim] = *similarity;
   pair.floor[Metric::flip] = flip(reference.a, reference.b);
+  pair.plain_sums_spp = std::min(options.most_spp, k_most_plain_samples);
+  pair.plain_sums = ladder.plain_sums(pair.plain_sums_spp);
   int number = 1;
   for (const int spp : ladder_of(options.most_spp)) {
     pair.ladder.push_back(ladder.rung(spp, number, options.seeds, reference));

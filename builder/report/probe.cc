@@ -42,9 +42,10 @@ class SharedRenderer : public Renderer {
 /// The recipe at one number of samples, in a folder of its own.
 class ProbeBuild {
  public:
-  ProbeBuild(const Recipe& recipe, int spp, const std::vector<ImageSpec>& images, Inputs& inputs,
-             Renderer& renderer, const std::filesystem::path& folder)
-      : plan_(plan_of(recipe, spp, images, inputs, folder)),
+  ProbeBuild(const Recipe& recipe, int spp, std::optional<ErrorTarget> target,
+             const std::vector<ImageSpec>& images, Inputs& inputs, Renderer& renderer,
+             const std::filesystem::path& folder)
+      : plan_(plan_of(recipe, spp, std::move(target), images, inputs, folder)),
         maker_(dataset_, inputs, plan_.texts, disk_,
                [&renderer] { return std::make_unique<SharedRenderer>(renderer); }) {}
 
@@ -55,10 +56,11 @@ class ProbeBuild {
     return watch.now() - start;
   }
 
-  std::optional<double> error(const std::string& id) {
+  /// The picture that was made.
+  Product picture(const std::string& id) {
     for (const OutputFile& output : image(id).keys.outputs)
-      if (output.kind == "image") return product(output.key).relative_error;
-    return std::nullopt;
+      if (output.kind == "image") return product(output.key);
+    assertion_failed("every image has a picture", __FILE__, __LINE__);
   }
 
   std::map<std::string, double> bytes(const std::string& id) {
@@ -71,11 +73,12 @@ class ProbeBuild {
   }
 
  private:
-  Plan plan_of(const Recipe& recipe, int spp, const std::vector<ImageSpec>& images, Inputs& inputs,
+  Plan plan_of(const Recipe& recipe, int spp, std::optional<ErrorTarget> target,
+               const std::vector<ImageSpec>& images, Inputs& inputs,
                const std::filesystem::path& folder) {
     dataset_.recipe = recipe;
     dataset_.recipe.engine.spp = spp;
-    dataset_.recipe.engine.target.reset();
+    dataset_.recipe.engine.target = std::move(target);
     dataset_.recipe.keep_sums = false;
     // Identities do not depend on the other models: these alone expand to the same images.
     std::set<std::filesystem::path> models;
@@ -113,12 +116,18 @@ class ProbeBuild {
 class Probing {
  public:
   Probing(const Recipe& recipe, Inputs& inputs, const std::vector<ImageSpec>& images,
-          Renderer& renderer, const std::filesystem::path& folder)
+          Renderer& renderer, const std::filesystem::path& folder, bool by_error)
       : samples_(probe_samples(recipe.engine)),
-        warm_(recipe, k_cold_spp, images, inputs, renderer, folder / "warm"),
-        cold_(recipe, k_cold_spp, images, inputs, renderer, folder / "cold"),
-        low_(recipe, samples_.low, images, inputs, renderer, folder / "low"),
-        high_(recipe, samples_.high, images, inputs, renderer, folder / "high") {}
+        warm_(recipe, k_cold_spp, std::nullopt, images, inputs, renderer, folder / "warm"),
+        cold_(recipe, k_cold_spp, std::nullopt, images, inputs, renderer, folder / "cold"),
+        low_(recipe, samples_.low, std::nullopt, images, inputs, renderer, folder / "low"),
+        high_(recipe, samples_.high, std::nullopt, images, inputs, renderer, folder / "high") {
+    if (!by_error) return;
+    // An error that no picture reaches: max_spp ends it.
+    target_.emplace(recipe, samples_.high, ErrorTarget{1e-6, k_target_probe_spp, {}}, images,
+                    inputs, renderer, folder / "target");
+    pixels_ = double(recipe.engine.width) * recipe.engine.height;
+  }
 
   /// Compiles the programs of this image's scene.
   void warm_up(const std::string& id, const ProbeWatch& watch) { warm_.make(id, watch); }
@@ -135,18 +144,30 @@ class Probing {
     probe.image_seconds = std::max(0.0, low - probe.sample_seconds * samples_.low);
     probe.scene_seconds =
         std::max(0.0, cold - probe.image_seconds - probe.sample_seconds * k_cold_spp);
-    probe.low_error = low_.error(id);
-    probe.high_error = high_.error(id);
+    probe.low_error = low_.picture(id).relative_error;
+    probe.high_error = high_.picture(id).relative_error;
     for (const auto& [kind, bytes] : low_.bytes(id))
       probe.bytes[kind].low = bytes;
     for (const auto& [kind, bytes] : high_.bytes(id))
       probe.bytes[kind].high = bytes;
+    if (target_) probe.target = target_probe(id, probe.image_seconds, watch);
     return probe;
   }
 
  private:
+  std::optional<TargetProbe> target_probe(const std::string& id, double image_seconds,
+                                          const ProbeWatch& watch) {
+    const double seconds = target_->make(id, watch);
+    const FilmFacts facts = target_->picture(id).facts;
+    if (!facts.developed_high || facts.samples == 0) return std::nullopt;
+    const double spp = static_cast<double>(facts.samples) / pixels_;
+    return TargetProbe{spp, *facts.developed_high, std::max(0.0, seconds - image_seconds) / spp};
+  }
+
   ProbeSamples samples_;
   ProbeBuild warm_, cold_, low_, high_;
+  std::optional<ProbeBuild> target_;
+  double pixels_ = 0;
 };
 
 }  // namespace
@@ -164,10 +185,11 @@ ProbeSamples probe_samples(const EngineSettings& engine) {
 
 std::vector<Probe> probe_images(const Recipe& recipe, Inputs& inputs,
                                 const std::vector<ImageSpec>& images, Renderer& renderer,
-                                const std::filesystem::path& folder, const ProbeWatch& watch) {
+                                const std::filesystem::path& folder, bool by_error,
+                                const ProbeWatch& watch) {
   std::vector<Probe> probes;
   if (images.empty()) return probes;
-  Probing probing(recipe, inputs, images, renderer, folder);
+  Probing probing(recipe, inputs, images, renderer, folder, by_error);
   for (const ImageSpec& image : images)
     probing.warm_up(image.id, watch);
   for (const ImageSpec& image : images) {

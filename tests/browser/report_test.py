@@ -104,7 +104,7 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(self.browser.value("document.querySelectorAll('.plots > svg').length"), charts)
         self.assertEqual(self.browser.value("document.querySelectorAll('#summary tbody tr').length"), PAIRS)
         text = self.browser.value("document.body.innerText")
-        for words in ("What accuracy costs: tiny", "time to 5 %", "time to 1 %", "Path depth", "no lens", "math: fast",
+        for words in ("What accuracy costs: tiny", "time to 5 %", "time to 1 %", "Path depth", "no lens", "math: fast", "Sums: plain floats",
                       "plain", "floor", "green", "red"):
             self.assertIn(words, text + self.browser.value("document.body.textContent"))
         self.assertGreater(self.browser.value("document.querySelectorAll('.plots .mark').length"), 10 * PAIRS)

@@ -4,6 +4,7 @@
 #include "builder/report/ladder.h"
 #include "tests/builder/report_pictures.h"
 #include "tracer/base/error.h"
+#include "tracer/kernels/layout.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -34,6 +35,18 @@ class KnownTracer : public SceneTracer {
                            static_cast<unsigned>(engine.seed));
     film.relative_error = noise / mean;
     return film;
+  }
+  /// Samples of 2^24, then of 1, which a plain float sum of 2^24 loses.
+  void trace_on(const Camera&, const EngineSettings& engine, FilmSums& sums,
+                const std::atomic<bool>&) override {
+    if (sums.empty()) sums = empty_film(engine.width, engine.height);
+    for (std::uint32_t& spp : sums.tile_spp)
+      spp = static_cast<std::uint32_t>(engine.spp);
+    for (std::size_t i = 0; i < 3 * sums.pixels(); ++i) {
+      sums.planes[kernels::k_film_sum * sums.pixels() + i] = 0x1p24f;
+      sums.planes[kernels::k_film_compensation * sums.pixels() + i] =
+          static_cast<float>(engine.spp - 1);
+    }
   }
   Geometry trace_geometry(const Camera&, int width, int height) override {
     clock_ += 1e-6 * width * height;
@@ -102,6 +115,8 @@ TEST_F(AccuracyTest, FindsTheLawsOfErrorAndTime) {
     // The reference's mean has 2 * 8 * 64 samples a pixel.
     EXPECT_NEAR(pair.reference_error, c / std::sqrt(1024.0), 0.05 * c / std::sqrt(1024.0));
     ASSERT_EQ(pair.targets.size(), 3U);
+    EXPECT_EQ(pair.plain_sums_spp, 64);
+    EXPECT_NEAR(pair.plain_sums, 63 / (0x1p24 + 63), 1e-12);
     EXPECT_EQ(pair.targets[1].error, 0.02);
     const double n = (c / 0.02) * (c / 0.02);
     EXPECT_NEAR(pair.targets[1].spp.value, n, 0.1 * n);

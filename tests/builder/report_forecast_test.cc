@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace ds {
@@ -80,6 +81,23 @@ TEST(Forecast, AnErrorTellsTheSamplesOfEachImage) {
   EXPECT_NEAR(f.seconds.value, 0.5 + 10 * 6.4, 1e-6);
 }
 
+TEST(Forecast, EngineErrorTakesItsOwnSamples) {
+  // Half the error of as many samples for all pixels, each half as dear again.
+  Probe p = probe(0.1, 0.01, 0.8);
+  p.target = {64, 0.05, 0.015};
+  const Forecast by_error = forecast({work(10, {p})}, {0.025, 0});
+  EXPECT_NEAR(by_error.pairs[0].spp, 256, 1e-6);
+  EXPECT_NEAR(by_error.pairs[0].error, 0.025, 1e-12);
+  EXPECT_NEAR(by_error.seconds.value, 0.5 + 10 * (0.1 + 256 * 0.015), 1e-6);
+  // Never fewer than its first step, nor more than max_spp.
+  EXPECT_EQ(forecast({work(10, {p})}, {0.5, 0}).pairs[0].spp, 16);
+  const Forecast capped = forecast({work(10, {p})}, {0.001, 0, 1024});
+  EXPECT_EQ(capped.pairs[0].spp, 1024);
+  EXPECT_NEAR(capped.pairs[0].error, 0.4 / 32, 1e-12);
+  // Without an error it is not asked.
+  EXPECT_NEAR(forecast({work(10, {p})}, {std::nullopt, 64}).seconds.value, 0.5 + 10 * 0.74, 1e-9);
+}
+
 TEST(Forecast, AnUncertainSlopeCountsWithTheDistance) {
   // Slopes of -0.5 and -0.6: a deviation of 0.0707, and of 0.05 for their mean, -0.55.
   Probe steep = probe(0, 0.01, 0.8);
@@ -90,8 +108,8 @@ TEST(Forecast, AnUncertainSlopeCountsWithTheDistance) {
   const auto half = [&](double error) {
     const Interval seconds = forecast({w}, {error, 0}).seconds;
     const double other = k_drift * seconds.value;
-    return std::sqrt((seconds.high - seconds.value) * (seconds.high - seconds.value) -
-                     other * other);
+    const double whole = seconds.high - seconds.value;
+    return std::sqrt(std::max(0.0, whole * whole - other * other));
   };
   EXPECT_NEAR(half(0.2), 0, 1e-6);
   const double n = 16 * std::pow(0.2 / 0.05, 1 / 0.55);
@@ -126,12 +144,12 @@ TEST(Forecast, SizesFollowTheirTrend) {
 TEST(Forecast, SlopesAreHeldToWhatIsMet) {
   Probe odd = probe(0, 0.01, 0.8);
   odd.high_error = *odd.low_error * 1.1;  // a firefly in the longer picture
-  const auto law = error_laws({odd}).front();
+  const auto law = error_laws({odd}, false).front();
   ASSERT_TRUE(law.has_value());
   EXPECT_NEAR(law->slope, -1.0 / 3, 1e-12);
   EXPECT_NEAR(law->error(16), *odd.high_error, 1e-12);
   odd.high_error.reset();
-  EXPECT_FALSE(error_laws({odd}).front().has_value());
+  EXPECT_FALSE(error_laws({odd}, false).front().has_value());
 }
 
 TEST(Duration, IsReadByItsUnits) {
@@ -148,6 +166,7 @@ TEST(Duration, IsReadByItsUnits) {
 TEST(Calibration, ProbesAreKeptWhole) {
   Probe p = probe(0.1, 0.2, 0.7);
   p.low_error.reset();
+  p.target = {64, 0.05, 0.015};
   const auto read = probe_from_json(to_json_text(p));
   ASSERT_TRUE(read.has_value());
   EXPECT_EQ(read->image_seconds, p.image_seconds);
@@ -155,6 +174,7 @@ TEST(Calibration, ProbesAreKeptWhole) {
   EXPECT_EQ(read->high_error, p.high_error);
   EXPECT_FALSE(read->low_error.has_value());
   EXPECT_EQ(read->bytes.at("image").low, 1000);
+  EXPECT_EQ(read->target.value().error, 0.05);
   for (const char* wrong : {"", "{", "[]", "{\"version\":1}", "{\"version\":\"1\"}", "null"})
     EXPECT_FALSE(probe_from_json(wrong).has_value()) << wrong;
 }
@@ -169,8 +189,14 @@ class TimedRenderer : public FakeRenderer {
              const std::atomic<bool>& stop) override {
     load(image);
     Film film = FakeRenderer::trace(image, kept, progress, stop);
-    clock += 0.002 * image.engine.spp;
-    film.relative_error = 0.8 / std::sqrt(image.engine.spp);
+    const auto& target = image.engine.target;
+    const int spp = target ? target->max_spp : image.engine.spp;
+    clock += (target ? 0.003 : 0.002) * spp;
+    film.relative_error = 0.8 / std::sqrt(spp);
+    if (target) {
+      film.facts.samples = static_cast<std::uint64_t>(film.width * film.height * spp);
+      film.facts.developed_high = 0.4 / std::sqrt(spp);
+    }
     return film;
   }
   Geometry trace_geometry(const ImageSpec& image) override {
@@ -192,13 +218,14 @@ class TimedRenderer : public FakeRenderer {
 
 class CalibrationTest : public TinyDataset {
  protected:
-  Calibration calibrated(const std::vector<std::string>& overrides, bool again = false) {
+  Calibration calibrated(const std::vector<std::string>& overrides, bool again = false,
+                         bool by_error = false) {
     const Recipe recipe = read_recipe(recipe_folder() / "recipe.toml", overrides);
     Database database{std::filesystem::path()};
     Inputs inputs(database);
     TimedRenderer renderer(calls);
-    return calibrate(recipe, inputs, renderer, CalibrationCache(scratch() / "cache"), again,
-                     scratch() / "work",
+    return calibrate(recipe, inputs, renderer, CalibrationCache(scratch() / "cache"),
+                     {again, by_error}, scratch() / "work",
                      {[](const std::string&) {}, [&renderer] { return renderer.clock; }, stop});
   }
 };
@@ -231,6 +258,22 @@ TEST_F(CalibrationTest, IsMeasuredOnceForEachDeviceAndProgram) {
   const std::size_t red = calibrated({}).measured;
   EXPECT_GT(red, 0U);
   EXPECT_LT(red, probes);
+}
+
+TEST_F(CalibrationTest, ProbesEngineErrorWhereItIsAskedFor) {
+  const std::size_t probes = calibrated({}).measured;
+  const Calibration c = calibrated({}, false, true);
+  EXPECT_EQ(c.measured, probes) << "what was kept knows nothing of it";
+  for (const std::vector<Probe>& of_pair : c.probes)
+    for (const Probe& p : of_pair) {
+      ASSERT_TRUE(p.target.has_value());
+      EXPECT_EQ(p.target->spp, k_target_probe_spp);
+      EXPECT_NEAR(p.target->error, 0.4 / std::sqrt(k_target_probe_spp), 1e-12);
+      EXPECT_NEAR(p.target->sample_seconds, 0.003, 1e-9);
+      EXPECT_NEAR(p.sample_seconds, 0.002, 1e-9);
+    }
+  EXPECT_EQ(calibrated({}, false, true).measured, 0U);
+  EXPECT_EQ(calibrated({}).measured, 0U);
 }
 
 TEST_F(CalibrationTest, WorkIsWhatThePlanLeaves) {

@@ -37,16 +37,20 @@ class ForecastTest(TinyCase):
         self.assertAlmostEqual(told["bytes"]["value"] / objects, 1, delta=0.25)
 
     def test_a_smaller_error_takes_longer_and_a_budget_buys_it_back(self):
-        near, far = self.forecast("--error", "0.01"), self.forecast("--error", "0.1")
+        near, far = self.forecast("--error", "0.001"), self.forecast("--error", "0.1")
         self.assertGreater(near["seconds"]["value"], far["seconds"]["value"])
         for pair in near["pairs"]:
-            if pair["spp"] > 1:
-                self.assertAlmostEqual(pair["error"], 0.01, delta=1e-6)
+            self.assertGreater(pair["spp"], 16)
+            self.assertAlmostEqual(pair["error"], 0.001, delta=1e-7)
+        for pair in far["pairs"]:
+            self.assertEqual(pair["spp"], 16, "engine.error's first step is enough")
         bought = self.forecast("--budget", f"{near['seconds']['value']:.6f}s")
-        self.assertAlmostEqual(bought["error"]["value"], 0.01, delta=0.0005)
+        self.assertAlmostEqual(bought["error"]["value"], 0.001, delta=0.00005)
 
     def test_text(self):
         out = self.plan("--error", "0.05").out
+        same = self.plan("--time", "--set", "engine.error=0.05").out
+        self.assertIn("every picture to an error of 5 %", same)
         self.assertIn("every picture to an error of 5 %", out)
         self.assertRegex(out, r"time about \d+:\d\d \(\d+:\d\d to \d+:\d\d\)")
         self.assertRegex(out, r"disk [\d.]+ kB")
