@@ -56,13 +56,18 @@ Mesh stand_in() {
 /// What is done to the film and which files there are, for `explain`.
 std::string canonical_files(const OutputSettings& outputs, const ToneMap& tone_map) {
   CanonicalText text;
-  text.add("image", encoding_of("image").format);
+  if (outputs.image) text.add("image", encoding_of("image").format);
   if (outputs.mask) text.add("mask", encoding_of("mask").format);
   if (outputs.depth) text.add("depth", encoding_of("depth").format);
   return text.text() + canonical_tone_map(tone_map);
 }
 
 }  // namespace
+
+Scene scene_without_model(Inputs& inputs, const ImageSpec& image) {
+  return compose(inputs.environment(image.environment_folder), inputs.material(image.material_file),
+                 stand_in());
+}
 
 const ToneMap& tone_map_of(const Recipe& recipe, const Scene& environment) {
   return recipe.outputs.tone_map ? *recipe.outputs.tone_map : environment.tone_map;
@@ -90,13 +95,11 @@ KeyMaker::KeyMaker(const Recipe& recipe, Inputs& inputs, TextSet& texts)
       texts_(texts),
       geometry_program_(hash_text(strip_comments(geometry_program_text()))) {}
 
-const Scene& KeyMaker::scene_without_model(const ImageSpec& image) {
+const Scene& KeyMaker::known_scene(const ImageSpec& image) {
   const SceneName name{image.material_file, image.environment_folder};
   const auto found = scenes_.find(name);
   if (found != scenes_.end()) return found->second;
-  Scene scene = compose(inputs_.environment(image.environment_folder),
-                        inputs_.material(image.material_file), stand_in());
-  return scenes_.emplace(name, std::move(scene)).first->second;
+  return scenes_.emplace(name, scene_without_model(inputs_, image)).first->second;
 }
 
 const std::string& KeyMaker::environment_shape(const std::filesystem::path& folder) {
@@ -136,7 +139,7 @@ std::vector<OutputFile> KeyMaker::outputs(const ImageSpec& image, const ImageKey
     text.add("format", encoding_of(kind).format);
     outputs.push_back({kind, output_path(image.id, kind), hash_text(text.text() + development)});
   };
-  add("image", keys.render, canonical_tone_map(tone_map));
+  if (recipe_.outputs.image) add("image", keys.render, canonical_tone_map(tone_map));
   if (recipe_.outputs.mask) add("mask", keys.geometry, "");
   if (recipe_.outputs.depth) add("depth", keys.geometry, "");
   return outputs;
@@ -158,8 +161,7 @@ ImageKeys KeyMaker::keys(const ImageSpec& image) {
   keys.parts[2] = part(environment_parts_, image.environment_folder,
                        [&] { return canonical_environment(environment); });
   keys.parts[3] = texts_.add(canonical_camera(image.camera));
-  keys.parts[4] =
-      texts_.add(canonical_engine(scene_without_model(image), image.camera, image.engine));
+  keys.parts[4] = texts_.add(canonical_engine(known_scene(image), image.camera, image.engine));
   keys.parts[5] = texts_.add(canonical_files(recipe_.outputs, tone_map));
 
   CanonicalText five;
@@ -171,7 +173,7 @@ ImageKeys KeyMaker::keys(const ImageSpec& image) {
   for (std::size_t i = 0; i < 4; ++i)
     kept.add(k_part_names[i], keys.parts[i].hex());
   kept.add(k_part_names[4],
-           hash_text(canonical_kept_engine(scene_without_model(image), image.camera, image.engine))
+           hash_text(canonical_kept_engine(known_scene(image), image.camera, image.engine))
                .hex());
   keys.kept = hash_text(kept.text());
   keys.geometry = geometry_key(image, keys.parts[0]);

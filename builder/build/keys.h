@@ -47,7 +47,7 @@ class KeyMaker {
  private:
   using SceneName = std::pair<std::filesystem::path, std::filesystem::path>;
 
-  const Scene& scene_without_model(const ImageSpec& image);
+  const Scene& known_scene(const ImageSpec& image);
   Hash128 geometry_key(const ImageSpec& image, Hash128 model_part);
   const std::string& environment_shape(const std::filesystem::path& folder);
   std::vector<OutputFile> outputs(const ImageSpec& image, const ImageKeys& keys,
@@ -61,6 +61,10 @@ class KeyMaker {
   std::map<std::filesystem::path, Hash128> material_parts_, environment_parts_;
   std::map<std::filesystem::path, std::string> environment_shapes_;
 };
+
+/// The image's scene with one triangle in the model's place: all that its program depends on.
+/// Throws where a file cannot be read.
+Scene scene_without_model(Inputs& inputs, const ImageSpec& image);
 
 /// The tone map an image is developed with: the recipe's, else its environment's.
 const ToneMap& tone_map_of(const Recipe& recipe, const Scene& environment);

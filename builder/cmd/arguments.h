@@ -26,6 +26,7 @@ struct Arguments {
   std::optional<double> error;
   std::string budget;
   bool json = false, dry_run = false, keep_going = false, force = false, explain = false;
+  bool effects = false;
 
   DatasetRequest request() const { return {target, overrides, output_folder, store_folder}; }
 };
@@ -43,6 +44,7 @@ enum class Option {
   keep_going,
   force,
   explain,
+  effects,
   rerender,
   seed,
   report_file,

@@ -64,6 +64,10 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
     case Option::explain:
       verb.add_flag("--explain", to.explain, "say why each image is made");
       return;
+    case Option::effects:
+      verb.add_flag("--effects", to.effects,
+                    "list what the image's program simulates and what it leaves out, and why");
+      return;
     case Option::rerender:
       verb.add_option("--rerender", to.rerender, "trace N images again and compare their bytes")
           ->type_name("N");

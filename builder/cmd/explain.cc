@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/plan.h"
+#include "builder/cmd/effects_text.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/verbs.h"
 #include "tracer/base/canonical.h"
@@ -102,6 +103,8 @@ int run_explain(const Arguments& arguments) {
       object["parts"][k_part_names[i]] = image.keys.parts[i].hex();
     for (const auto& [part, change] : changes)
       object["changes"].push_back(to_json(part, change));
+    if (arguments.effects)
+      object["effects"] = to_json(image_effects(dataset.recipe, inputs, image.spec));
     print_json(object);
     return 0;
   }
@@ -113,6 +116,7 @@ int run_explain(const Arguments& arguments) {
   fmt::print("render key {}\n", image.keys.render.hex());
   for (std::size_t i = 0; i < k_part_count; ++i)
     fmt::print("  {:<11} {}\n", k_part_names[i], image.keys.parts[i].hex());
+  if (arguments.effects) print_effects(image_effects(dataset.recipe, inputs, image.spec));
   return 0;
 }
 

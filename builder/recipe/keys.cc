@@ -188,8 +188,10 @@ constexpr std::array k_keys = {
             "Largest share of a picture's samples that may be NaN, infinite or negative; over it "
             "the picture fails"},
 
-    KeySpec{"outputs.image", choice, "", "\"png\"", k_any, "\"png\"", "",
-            "Format of the pictures: 8 bit RGB, images/MODEL/VIEW.png"},
+    KeySpec{
+        "outputs.image", choice, "", "\"png\"", k_any, R"("png" | false)", "",
+        "Format of the pictures: 8 bit RGB, images/MODEL/VIEW.png; false: none, and then no path "
+        "is traced"},
     KeySpec{"outputs.mask", boolean, "", "true", k_any, "", "",
             "Write VIEW.mask.png: white where the model is seen, else black"},
     KeySpec{"outputs.depth", choice, "", "false", k_any, R"("exr" | false)", "",

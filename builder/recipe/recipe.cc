@@ -62,8 +62,11 @@ EngineSettings read_engine(const Settings& settings) {
 
 OutputSettings read_outputs(const Settings& settings) {
   OutputSettings outputs;
+  outputs.image = settings.find("outputs.image")->text() != nullptr;
   outputs.mask = settings.boolean("outputs.mask");
   outputs.depth = settings.find("outputs.depth")->text() != nullptr;
+  if (!outputs.image && !outputs.mask && !outputs.depth)
+    settings.complain("outputs.image", "is off, and so are mask and depth; wanted one at least");
   if (settings.text("outputs.tone_map") == "environment") return outputs;
   ToneMap& map = outputs.tone_map.emplace();
   map.kind = choice<ToneMap::Kind, 3>(settings, "outputs.tone_map",

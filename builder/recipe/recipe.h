@@ -21,6 +21,7 @@ enum class ChoosePer { model, view };
 
 /// Which files an image consists of. Depth is planar z.
 struct OutputSettings {
+  bool image = true;  ///< the path-traced picture
   bool mask = true;
   bool depth = false;
   std::optional<ToneMap> tone_map;  ///< overrides every environment's own

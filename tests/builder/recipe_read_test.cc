@@ -180,7 +180,7 @@ TEST_F(RecipeReadTest, ReportsWrongShapes) {
   EXPECT_EQ(folder_.findings("models.up = [\"y\"]"),
             "r.toml:4:13: models.up must be \"y\" or \"z\", got [\"y\"]");
   EXPECT_EQ(folder_.findings("outputs.image = \"tiff\""),
-            "r.toml:4:17: outputs.image must be \"png\", got \"tiff\"");
+            "r.toml:4:17: outputs.image must be \"png\" or false, got \"tiff\"");
 }
 
 TEST_F(RecipeReadTest, RefusesAKeyThatHasNoEffect) {
@@ -225,6 +225,13 @@ TEST_F(RecipeReadTest, LetsSetReplaceDirByFilesAndBack) {
             3u);
   EXPECT_EQ(folder_.findings("models.files = [\"models/car.ply\"]"),
             "r.toml:4:16: models.files must not be given together with models.dir");
+}
+
+TEST_F(RecipeReadTest, WantsOneOutputAtLeast) {
+  EXPECT_FALSE(folder_.read("[outputs]\nimage = false\n").outputs.image);
+  EXPECT_TRUE(folder_.read().outputs.image);
+  EXPECT_EQ(folder_.findings("[outputs]\nimage = false\nmask = false\n"),
+            "r.toml:5:9: outputs.image is off, and so are mask and depth; wanted one at least");
 }
 
 TEST_F(RecipeReadTest, RefusesTwoModelsOfOneName) {

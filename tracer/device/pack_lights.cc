@@ -140,13 +140,13 @@ void pack_lights(const Scene& scene, const Features& features, PackedScene& pack
   mesh_lights.assign(scene.objects.size(), k_none);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
-    if (object.material < 0 || !scene.materials[static_cast<std::size_t>(object.material)].emits)
+    if (object.material < 0 || !shines(scene.materials[static_cast<std::size_t>(object.material)]))
       continue;
     mesh_lights[i] = static_cast<std::uint32_t>(rows.size());
     rows.push_back(mesh_row(scene, object, first[i], packed.tables));
   }
   for (const Light& light : scene.lights)
-    rows.push_back(light_row(scene, light, radius, packed.tables));
+    if (shines(light)) rows.push_back(light_row(scene, light, radius, packed.tables));
   std::stable_partition(rows.begin(), rows.end(),
                         [&](const LightRow& row) { return !is_escape(features, row); });
 

@@ -106,7 +106,28 @@ void add_materials(const Scene& scene, Features& f) {
   f.textures = prefixes(texture_types(), textures);
 }
 
-std::string_view light_name(LightKind kind) {
+const std::vector<std::string> k_local_lights = {"mesh", "point", "spot"};
+const std::vector<std::string> k_escape_lights = {"constant_infinite", "infinite", "sun"};
+
+void add_lights(const Scene& scene, Features& f) {
+  std::set<std::string_view> names;
+  for (const Light& light : scene.lights)
+    if (shines(light)) names.insert(light_kind_name(light.kind));
+  for (const Object& object : scene.objects)
+    if (object.material >= 0 && shines(scene.materials[static_cast<std::size_t>(object.material)]))
+      names.insert("mesh");
+  for (const std::string& name : k_local_lights)
+    if (names.contains(name)) f.lights.push_back(name);
+  for (const std::string& name : k_escape_lights) {
+    if (!names.contains(name)) continue;
+    f.lights.push_back(name);
+    f.escape_lights.push_back(name);
+  }
+}
+
+}  // namespace
+
+std::string_view light_kind_name(LightKind kind) {
   switch (kind) {
     case LightKind::point:
       return "point";
@@ -122,32 +143,26 @@ std::string_view light_name(LightKind kind) {
   DS_ASSERT(false);
 }
 
-const std::vector<std::string> k_local_lights = {"mesh", "point", "spot"};
-const std::vector<std::string> k_escape_lights = {"constant_infinite", "infinite", "sun"};
-
-void add_lights(const Scene& scene, Features& f) {
-  std::set<std::string_view> names;
-  for (const Light& light : scene.lights)
-    names.insert(light_name(light.kind));
-  for (const Object& object : scene.objects)
-    if (object.material >= 0 && scene.materials[static_cast<std::size_t>(object.material)].emits)
-      names.insert("mesh");
-  for (const std::string& name : k_local_lights)
-    if (names.contains(name)) f.lights.push_back(name);
-  for (const std::string& name : k_escape_lights) {
-    if (!names.contains(name)) continue;
-    f.lights.push_back(name);
-    f.escape_lights.push_back(name);
-  }
+bool samples_light(std::string_view kind) {
+  return kind != "constant_infinite";
 }
 
-bool picks_lobes(const Features& f) {
-  return f.mix || Features::number(f.materials, "glossy2") >= 0 ||
-         Features::number(f.materials, "metal2") >= 0 ||
-         Features::number(f.materials, "glass") >= 0;
+bool samples_lights(const Features& f) {
+  return std::any_of(f.lights.begin(), f.lights.end(), samples_light);
 }
 
-}  // namespace
+bool has_lobes(std::string_view material) {
+  return material == "glossy2" || material == "metal2" || material == "glass";
+}
+
+bool shines(const Light& light) {
+  return light.color.x > 0 || light.color.y > 0 || light.color.z > 0;
+}
+
+bool shines(const Material& material) {
+  const Vec3 c = material.emission.constant;
+  return material.emits && (material.emission.texture >= 0 || c.x > 0 || c.y > 0 || c.z > 0);
+}
 
 int Features::number(const std::vector<std::string>& list, std::string_view name) {
   const auto found = std::find(list.begin(), list.end(), name);
@@ -161,7 +176,7 @@ Features features_of(const Scene& scene, const Camera& camera) {
   f.lens = camera.lens_radius_m > 0;
   f.camera_invisible = std::any_of(scene.objects.begin(), scene.objects.end(),
                                    [](const Object& object) { return object.camera_invisible; });
-  f.lobe_choice = picks_lobes(f);
+  f.lobe_choice = f.mix || std::any_of(f.materials.begin(), f.materials.end(), has_lobes);
   return f;
 }
 
@@ -198,9 +213,8 @@ std::string path_program_text(const Features& f) {
   if (!f.escape_lights.empty())
     head += list_definition("DS_ESCAPE_LIGHTS", f.escape_lights, f.lights);
   head += fmt::format("#define DS_MATERIAL_INPUTS {}\n", f.material_inputs);
-  // A constant environment is never sampled; alone, it needs no next-event estimation at all.
-  if (f.lights.size() > 1 || (f.lights.size() == 1 && f.lights[0] != "constant_infinite"))
-    head += "#define DS_LIGHTS_SAMPLED\n";
+  // Alone, a constant sky needs no next-event estimation at all.
+  if (samples_lights(f)) head += "#define DS_LIGHTS_SAMPLED\n";
   if (Features::number(f.lights, "mesh") >= 0) head += "#define DS_MESH_LIGHTS\n";
   if (f.mix) head += fmt::format("#define DS_MIX_NUMBER {}\n", f.materials.size());
   if (f.lens) head += "#define DS_LENS\n";

@@ -30,6 +30,20 @@ struct Features {
   static int number(const std::vector<std::string>& list, std::string_view name);
 };
 
+/// "point", "spot", "sun", "constant_infinite", "infinite": of its kernel header.
+std::string_view light_kind_name(LightKind kind);
+/// Whether next-event estimation chooses this kind of light: all but a constant sky, which
+/// scattered rays find as well.
+bool samples_light(std::string_view kind);
+bool samples_lights(const Features& features);
+/// Whether the material with this kernel prefix picks one of several lobes.
+bool has_lobes(std::string_view material);
+
+/// False for a light or an emitter whose radiance is 0: it is treated as if it were not there. What
+/// an image or a texture holds is not looked at.
+bool shines(const Light& light);
+bool shines(const Material& material);
+
 /// Of the objects' materials (and what these mix), all lights, and the camera's lens.
 Features features_of(const Scene& scene, const Camera& camera);
 /// Everything there is, in one program: the same bits, later.

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/cmd/effects_text.h"
+
+#include "builder/build/keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ds {
+
+std::vector<Effect> image_effects(const Recipe& recipe, Inputs& inputs, const ImageSpec& image) {
+  std::vector<Effect> effects = effects_of(scene_without_model(inputs, image), image.camera);
+  for (Effect& effect : effects)
+    if (!recipe.outputs.image && effect.name != "camera-invisible objects") {
+      effect.simulated = false;
+      effect.why = "no path is traced without outputs.image";
+    }
+  const auto output = [&](const char* name, bool wanted) {
+    effects.push_back({"output", name, wanted,
+                       fmt::format("outputs.{} is {}", name, wanted ? "set" : "not set")});
+  };
+  output("image", recipe.outputs.image);
+  output("mask", recipe.outputs.mask);
+  output("depth", recipe.outputs.depth);
+  return effects;
+}
+
+nlohmann::json to_json(const std::vector<Effect>& effects) {
+  nlohmann::json array = nlohmann::json::array();
+  for (const Effect& effect : effects)
+    array.push_back({{"sort", effect.sort},
+                     {"name", effect.name},
+                     {"simulated", effect.simulated},
+                     {"why", effect.why}});
+  return array;
+}
+
+void print_effects(const std::vector<Effect>& effects) {
+  const auto simulated = std::count_if(effects.begin(), effects.end(),
+                                       [](const Effect& effect) { return effect.simulated; });
+  fmt::print("effects: {} of {} are in this image's program, the rest is left out\n", simulated,
+             effects.size());
+  for (const bool wanted : {true, false})
+    for (const Effect& effect : effects)
+      if (effect.simulated == wanted)
+        fmt::print("  {:<12} {:<9} {:<28} {}\n", wanted ? "simulated" : "compiled out", effect.sort,
+                   effect.name, effect.why);
+}
+
+}  // namespace ds
