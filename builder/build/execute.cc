@@ -15,6 +15,8 @@
 #include <thread>
 #include <tuple>
 #include <unistd.h>
+#include <vector>
+
 namespace ds {
 namespace {
 
@@ -22,6 +24,22 @@ namespace fs = std::filesystem;
 
 /// How long to sleep where every image left is being made by other processes.
 constexpr std::chrono::milliseconds k_claim_poll{50};
+
+/// The first image of each kind that can need a program of its own: the features of its scene
+/// depend on material and environment, not on the model.
+std::vector<const ImageSpec*> one_of_each_kind(const std::deque<const PlannedImage*>& queue) {
+  std::set<std::tuple<fs::path, fs::path, bool, MathMode>> kinds;
+  std::vector<const ImageSpec*> first;
+  for (const PlannedImage* image : queue) {
+    const ImageSpec& spec = image->spec;
+    if (image->trace_film && kinds
+                                 .emplace(spec.material_file, spec.environment_folder,
+                                          spec.camera.lens_radius_m > 0, spec.engine.math)
+                                 .second)
+      first.push_back(&spec);
+  }
+  return first;
+}
 
 class Execution {
  public:
@@ -130,6 +148,7 @@ void Execution::make_all(Queue queue) {
   for (const PlannedImage* image : queue)
     samples += image->trace_film ? image->samples() : 0;
   observer_.started(queue.size(), samples);
+  maker_.announce(one_of_each_kind(queue));
   std::size_t put_back = 0;  // images in a row that others are making
   while (!queue.empty() && !cut_short()) {
     const PlannedImage* image = queue.front();
@@ -206,6 +225,7 @@ BuildResult Execution::run() {
   collect_failures();
   result_.not_reached = result_.images - result_.built - result_.reused - result_.failed;
   result_.device = maker_.device();
+  result_.programs = maker_.programs();
   try {
     finish();
     log();

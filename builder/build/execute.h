@@ -26,6 +26,7 @@ struct BuildResult {
   std::uint64_t traced = 0;          ///< of the built: something was traced
   std::uint64_t developed = 0;       ///< of the built: a picture was made from a film
   std::uint64_t traced_samples = 0;  ///< camera samples, over all pixels
+  ProgramCounts programs;
   double seconds = 0;
   std::string device;    ///< empty where nothing was traced
   bool stopped = false;  ///< by the user

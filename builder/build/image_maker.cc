@@ -53,7 +53,10 @@ ImageMaker::ImageMaker(Dataset& dataset, Inputs& inputs, const TextSet& texts, D
 }
 
 Renderer& ImageMaker::renderer() {
-  if (!renderer_) renderer_ = factory_();
+  if (!renderer_) {
+    renderer_ = factory_();
+    renderer_->announce(std::move(upcoming_));
+  }
   return *renderer_;
 }
 

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace ds {
@@ -39,6 +40,10 @@ class ImageMaker {
   /// Writes the stamps of the files placed since the last call; they ride along with the next image
   /// otherwise.
   void remember_stamps();
+  /// As Renderer::announce; the images must outlive this.
+  void announce(std::vector<const ImageSpec*> images) { upcoming_ = std::move(images); }
+  /// Of the renderer; none before anything was traced.
+  ProgramCounts programs() const { return renderer_ ? renderer_->programs() : ProgramCounts{}; }
   /// Of the renderer; empty before anything was traced.
   std::string device() const { return renderer_ ? renderer_->device() : ""; }
 
@@ -67,6 +72,7 @@ class ImageMaker {
   RendererFactory factory_;
   std::unique_ptr<Renderer> renderer_;
   std::vector<PlacedFile> stamped_;
+  std::vector<const ImageSpec*> upcoming_;  ///< announced before there was a renderer
 };
 
 }  // namespace ds

@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace ds {
 
@@ -24,6 +25,10 @@ class Renderer {
                      const std::function<void(const TraceProgress&)>& progress,
                      const std::atomic<bool>& stop) = 0;
   virtual Geometry trace_geometry(const ImageSpec& image) = 0;
+  /// Images that will be traced, in this order, one of each kind: what they need is got ready in
+  /// the background while others are traced. They must outlive the renderer.
+  virtual void announce(std::vector<const ImageSpec*> /*images*/) {}
+  virtual ProgramCounts programs() const { return {}; }
   virtual std::string device() const = 0;
 };
 

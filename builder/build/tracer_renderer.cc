@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "builder/build/keys.h"
 #include "builder/build/renderer.h"
+#include "tracer/base/error.h"
 #include "tracer/scene/sdl.h"
 
+#include <deque>
 #include <filesystem>
 #include <optional>
 #include <tuple>
@@ -18,12 +21,18 @@ class TracerRenderer : public Renderer {
              const std::function<void(const TraceProgress&)>& progress,
              const std::atomic<bool>& stop) override {
     load(image);
+    tracer_.prepare(image.camera, image.engine);
+    prepare_next();
     return tracer_.trace(image.camera, image.engine, progress, &stop, kept);
   }
   Geometry trace_geometry(const ImageSpec& image) override {
     load(image);
     return tracer_.trace_geometry(image.camera, image.engine.width, image.engine.height);
   }
+  void announce(std::vector<const ImageSpec*> images) override {
+    upcoming_.assign(images.begin(), images.end());
+  }
+  ProgramCounts programs() const override { return tracer_.programs(); }
   std::string device() const override { return tracer_.device_name(); }
 
  private:
@@ -39,10 +48,25 @@ class TracerRenderer : public Renderer {
     loaded_ = wanted;
   }
 
+  /// Starts one program. Looks at a few images only: thousands may share one.
+  void prepare_next() {
+    constexpr int k_most_looks = 8;
+    for (int look = 0; look < k_most_looks && !upcoming_.empty(); ++look) {
+      const ImageSpec& next = *upcoming_.front();
+      upcoming_.pop_front();
+      try {
+        if (tracer_.prepare_ahead(scene_without_model(inputs_, next), next.camera, next.engine))
+          return;
+      } catch (const Error&) {  // a file that cannot be read fails its own images
+      }
+    }
+  }
+
   Inputs& inputs_;
   const Recipe& recipe_;
   Tracer tracer_;
   std::optional<SceneName> loaded_;
+  std::deque<const ImageSpec*> upcoming_;
 };
 
 }  // namespace

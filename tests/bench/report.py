@@ -12,6 +12,8 @@ def plain(value):
         return value._asdict()
     if isinstance(value, dict):
         return {key: plain(inner) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [plain(inner) for inner in value]
     return value
 
 

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
 namespace ds {
@@ -49,6 +50,19 @@ TEST_F(BuildTest, TracesImagesOfOneSceneOneAfterAnother) {
   EXPECT_EQ(changes, 3U) << "four scenes";
 }
 
+TEST_F(BuildTest, AnnouncesOneImageOfEachKindInTheOrderTheyAreTraced) {
+  request.overrides = {"materials.assign=all", "environments.assign=all"};
+  build();
+  // Two models of four views, with two materials in two environments: the model makes no kind of
+  // its own, so the first model's first view of each pair is announced.
+  ASSERT_THAT(calls.traced, SizeIs(2 * 4 * 4));
+  EXPECT_THAT(calls.announced,
+              ElementsAre(calls.traced[0], calls.traced[4], calls.traced[8], calls.traced[12]));
+  calls.announced.clear();
+  EXPECT_EQ(build().built, 0U);
+  EXPECT_THAT(calls.announced, IsEmpty());
+}
+
 TEST_F(BuildTest, AToneMapDevelopsAnewAndTracesNothing) {
   build();
   const auto before = contents();
@@ -64,6 +78,20 @@ TEST_F(BuildTest, AToneMapDevelopsAnewAndTracesNothing) {
   request.overrides.clear();
   EXPECT_EQ(build().developed, 0U);
   EXPECT_EQ(contents(), before);
+}
+
+TEST_F(BuildTest, ARecipeOfMasksAndDepthsTracesNoPath) {
+  request.overrides = {"outputs.image=false", "outputs.depth=exr"};
+  const BuildResult result = build();
+  EXPECT_TRUE(result.ok());
+  EXPECT_EQ(result.built, k_images);
+  EXPECT_EQ(result.traced_samples, 0U);
+  EXPECT_THAT(calls.traced, IsEmpty());
+  EXPECT_THAT(calls.announced, IsEmpty()) << "no path program is made";
+  EXPECT_THAT(calls.geometry, SizeIs(k_images));
+  EXPECT_EQ(contents().size(), k_images * 2 + 3);
+  EXPECT_FALSE(fs::exists(output() / "images/box.off/0.png"));
+  EXPECT_EQ(build().reused, k_images);
 }
 
 TEST_F(BuildTest, DepthTracesGeometryOnly) {

@@ -20,9 +20,9 @@ class FakeRenderer : public Renderer {
  public:
   /// What all fakes of one build share.
   struct Calls {
-    std::vector<std::string> traced, geometry;      ///< ids in order
-    std::string fails_on;                           ///< id of an image that cannot be traced
-    std::map<std::string, std::uint64_t> rejected;  ///< samples that are NaN, by id
+    std::vector<std::string> traced, geometry, announced;  ///< ids in order
+    std::string fails_on;                                  ///< id of an image that cannot be traced
+    std::map<std::string, std::uint64_t> rejected;         ///< samples that are NaN, by id
     std::atomic<bool>* stop_after_one = nullptr;
   };
   explicit FakeRenderer(Calls& calls) : calls_(calls) {}
@@ -58,6 +58,11 @@ class FakeRenderer : public Renderer {
     }
     return geometry;
   }
+  void announce(std::vector<const ImageSpec*> images) override {
+    for (const ImageSpec* image : images)
+      calls_.announced.push_back(image->id);
+  }
+  ProgramCounts programs() const override { return {}; }
   std::string device() const override { return "fake"; }
 
  private:

@@ -110,6 +110,40 @@ class BuildTest(TinyCase):
         changes = self.run_it("explain", image, "--json").json["changes"]
         self.assertEqual([(c["part"], c["name"]) for c in changes], [("camera", "fov_deg")])
 
+    def test_explain_lists_what_is_simulated(self):
+        arguments = ["explain", self.recipe, "-o", self.out, "box.off/0", "--effects"]
+        effects = {(e["sort"], e["name"]): e for e in self.run_it(*arguments, "--json").json["effects"]}
+        simulated = {key for key, effect in effects.items() if effect["simulated"]}
+        self.assertEqual(simulated, {("material", "matte"), ("light", "constant_infinite"),
+                                     ("transport", "light from beyond the scene"), ("output", "image"),
+                                     ("output", "mask")})
+        self.assertIn("object model", effects["material", "matte"]["why"])
+        self.assertEqual(effects["light", "constant_infinite"]["why"], "light sky")
+        self.assertEqual(effects["material", "glass"]["why"], "no material is of this type")
+        self.assertEqual(effects["output", "depth"]["why"], "outputs.depth is not set")
+        text = self.run_it(*arguments).out
+        self.assertRegex(text, r"effects: \d+ of \d+ are in this image's program")
+        self.assertRegex(text, r"  simulated +material +matte +material \S+ of object")
+        self.assertRegex(text, r"  compiled out +camera +lens +the lens radius is 0")
+        self.assertFalse(self.out.exists(), "looking makes nothing")
+
+    def test_programs_are_as_many_as_feature_sets_and_are_made_ahead(self):
+        # Two of matte and glossy2, each alone and with the other: the floor is matte.
+        self.edit("materials/green.mat", "type = matte", "type = glossy2")
+        new_cache = {"env": {**os.environ, "XDG_CACHE_HOME": str(self.folder / "cache")}}
+        every = ["--set", "materials.assign=all", "--set", "environments.assign=all"]
+        first = self.build(*every, **new_cache)
+        ids = [json.loads(line)["id"] for line in (self.out / "manifest/images.jsonl").read_text().splitlines()]
+        sets = set()
+        for image in ids[:first["images"] // 2]:  # the first model's
+            effects = self.run_it("explain", self.out, image, "--effects", "--json").json["effects"]
+            sets.add(tuple(e["name"] for e in effects if e["simulated"]))
+        self.assertEqual(len(sets), 3)
+        self.assert_counts(first, programs=3, programs_compiled=3, programs_ahead=2)
+        again = self.build(*every, out=self.folder / "again", **new_cache)
+        self.assert_counts(again, programs=3, programs_compiled=0, built=first["built"])
+        self.assertEqual(self.contents(), self.contents(self.folder / "again"))
+
     def test_status_and_log(self):
         self.build()
         status = self.run_it("status", self.out, "--json").json

@@ -5,6 +5,7 @@
 // depend on how pixels are dealt out.
 #include "tracer/kernels/batch.cl"
 #include "tracer/kernels/camera.h"
+#include "tracer/kernels/ray_counts.h"
 #include "tracer/kernels/shade.h"
 
 /// Pairs of dimensions a sample uses: two for the camera, then k_pairs_vertex at each path vertex.
@@ -27,6 +28,7 @@ typedef struct {
   real3 direct;   ///< what the shadow ray's light adds where nothing stands between
   real3 closing;  ///< radiance so far of the sample before the one in flight
   mask closes;    ///< that sample still waits for its shadow ray
+  DS_RAY_COUNTS_FIELD
 } Paths;
 
 typedef struct {
@@ -186,6 +188,13 @@ DS_FN void ask_for_light(Paths* paths, mask active, const Surface* s, const Mate
 }
 #endif
 
+/// True where a path may visit no further surface; what its last ray meets may still shine, which
+/// the last vertex' light sample has left a share for.
+DS_FN mask is_last(const Paths* paths, const ViewData* view) {
+  return (paths->vertices >= view->depth_total) | (paths->diffuse > view->depth_diffuse) |
+         (paths->glossy > view->depth_glossy) | (paths->specular > view->depth_specular);
+}
+
 /// Continues the paths by a BSDF sample; returns the lanes whose path ends here.
 DS_FN mask scatter(Paths* paths, mask active, const Surface* s, const MaterialPoint* m, Frame frame,
                    Viewer viewer, Sampler sampler, natural pair, real lobe_choice, real roulette,
@@ -212,7 +221,11 @@ DS_FN mask scatter(Paths* paths, mask active, const Surface* s, const MaterialPo
   paths->diffuse += choose_natural(matte, (natural)(1u), (natural)(0u));
   paths->glossy += choose_natural(b.glossy & !b.specular, (natural)(1u), (natural)(0u));
   paths->specular += choose_natural(b.specular, (natural)(1u), (natural)(0u));
-  const mask ends = !b.valid | leaks | (roulette >= survival) | (max_component(throughput) <= 0.0f);
+  mask ends = !b.valid | leaks | (roulette >= survival) | (max_component(throughput) <= 0.0f);
+#if !defined(DS_ESCAPE_LIGHTS) && !defined(DS_MESH_LIGHTS)
+  // Nothing that a ray could meet shines.
+  ends = ends | is_last(paths, view);
+#endif
   paths->throughput = choose(active, scale(throughput, 1.0f / survival), paths->throughput);
   paths->eta_scale = choose(active, eta_scale, paths->eta_scale);
   paths->pdf = choose(active, choose(b.specular, (real)(-1.0f), b.pdf), paths->pdf);
@@ -318,13 +331,6 @@ DS_FN void add_samples(Sums* sums, mask done, natural number, real3 radiance) {
   }
 }
 
-/// True where a path may visit no further surface; what its last ray meets may still shine, which
-/// the last vertex' light sample has left a share for.
-DS_FN mask is_last(const Paths* paths, const ViewData* view) {
-  return (paths->vertices >= view->depth_total) | (paths->diffuse > view->depth_diffuse) |
-         (paths->glossy > view->depth_glossy) | (paths->specular > view->depth_specular);
-}
-
 /// Adds the light of shadow rays that met nothing, and the samples that waited for it.
 DS_FN void add_direct(Paths* paths, Sums* sums, const BatchHits* found) {
   const mask lit = paths->shadow.wanted & (*(const mask*)found->any == 0);
@@ -354,6 +360,7 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
   next.t_max = (real)(1e30f);
   next.wanted = paths->alive;
   BatchHits found;
+  DS_COUNT_STEP(paths);
   trace_lanes(t->nodes, t->leaves, &next, &paths->shadow, &found);
   add_direct(paths, sums, &found);
   mask hit = paths->alive & (*(const natural*)found.id != k_none);
@@ -426,7 +433,7 @@ __kernel void trace_paths(
     const __global float* restrict programs, const __global float* restrict lights,
     const __global float* restrict tables, const __global SceneData* restrict scene_data,
     const __global ViewData* restrict view_data, const __global uint* restrict steps,
-    __global float* restrict film) {
+    __global float* restrict film DS_RAY_COUNTS_ARGUMENT) {
   const uint item = (uint)get_global_id(0);
   const __global uint* step = steps + item * (uint)DS_LANES / 64u * (uint)k_step_words;
   const uint end = step[k_step_end];
@@ -448,6 +455,7 @@ __kernel void trace_paths(
   Sums sums;
   load_sums(&sums, film, &pixels, &view);
   Paths paths;
+  DS_CLEAR_RAY_COUNTS(paths);
   paths.alive = paths.closes = paths.shadow.wanted = (mask)(0);
   paths.shadow.origin = paths.shadow.direction = splat((real)(0.0f));
   paths.shadow.t_max = (real)(0.0f);
@@ -467,4 +475,5 @@ __kernel void trace_paths(
     if (any_lane(start)) start_paths(&paths, start, &pixels, &scene, &view, &t);
   }
   store_sums(&sums, &pixels);
+  DS_STORE_RAY_COUNTS(paths);
 }

@@ -84,6 +84,9 @@ enum {
 /// Greatest component of a sample that can be added at all; above it counts as infinite.
 #define k_sample_most 1e30f
 
+/// What a program built with -DDS_COUNT_RAYS counts (ray_counts.h).
+enum { k_count_camera, k_count_extension, k_count_shadow, k_ray_counts };
+
 /// One pixel's running sums in film: planes of `width * height` floats, in this order.
 enum {
   k_film_sum = 0,           ///< 3: r, g, b

@@ -95,11 +95,27 @@ struct TraceProgress {
 struct TracerOptions {
   std::string
       device;     ///< "" = first CPU device, else first of any; a number or part of a name selects
-  int lanes = 0;  ///< N: 0 = 8 on CPUs, 1 on GPUs; 1, 4, 8, 16
+  int lanes = 0;  ///< N: 0 = 16 on CPUs, 1 on GPUs; 1, 4, 8, 16
   int work_group_size = 0;    ///< 0 = 8
   bool full_program = false;  ///< compile every effect in, used or not
   bool high_quality_bvh = false;
+  bool count_rays = false;   ///< see Tracer::ray_counts; costs a few percent
   std::string cache_folder;  ///< compiled programs; "" = the user's cache folder
+};
+
+/// A tracer's path-tracing programs: one for each set of features that its pictures called for.
+struct ProgramCounts {
+  std::uint64_t programs = 0;
+  std::uint64_t compiled = 0;  ///< of these, not found among those of earlier processes
+  std::uint64_t ahead = 0;     ///< of these, begun before a picture needed them
+};
+
+/// Rays that a picture's paths traced; a camera ray goes on behind an object that the camera does
+/// not see as another one.
+struct RayCounts {
+  std::uint64_t camera = 0, extension = 0, shadow = 0;
+
+  bool operator==(const RayCounts&) const = default;
 };
 
 /// Traces pictures on one device. Not safe from two threads at once; use one a thread.
@@ -121,6 +137,15 @@ class Tracer {
   Film trace(const Camera& camera, const EngineSettings& engine,
              const std::function<void(const TraceProgress&)>& progress = {},
              const std::atomic<bool>* stop = nullptr, FilmSums* kept = nullptr);
+  /// Packs the scene set and gets its program; `trace` does so where it was not done.
+  void prepare(const Camera& camera, const EngineSettings& engine);
+  /// Starts to get the program of a later picture ready in a thread of its own, which goes on while
+  /// `trace` runs. Of the scene only what `features_of` looks at matters. False, at once, where the
+  /// program is known already.
+  bool prepare_ahead(const Scene& scene, const Camera& camera, const EngineSettings& engine);
+  ProgramCounts programs() const;
+  /// Of all pictures traced, where TracerOptions::count_rays was set; else none.
+  RayCounts ray_counts() const;
   Geometry trace_geometry(const Camera& camera, int width, int height);
   std::string device_name() const;
   /// Whether the device is this machine's processors: their time is then this process' own.

@@ -6,6 +6,7 @@
 #include "tracer/kernels/layout.h"
 #include "tracer/render/film.h"
 #include "tracer/render/images.h"
+#include "tracer/render/path_programs.h"
 #include "tracer/render/render.h"
 #include "tracer/render/schedule.h"
 #include "tracer/render/view.h"
@@ -69,8 +70,15 @@ bool goes_on(const EngineSettings& engine, const FilmSums& film) {
 }  // namespace
 
 struct Tracer::State {
-  explicit State(const TracerOptions& o) : options(o), device(o.device) {
-    lanes = options.lanes != 0 ? options.lanes : device.info().is_cpu ? 8 : 1;
+  explicit State(const TracerOptions& o)
+      : options(o),
+        device(o.device),
+        lanes(o.lanes != 0           ? o.lanes
+              : device.info().is_cpu ? 16
+                                     : 1),
+        programs(device,
+                 fmt::format("-DDS_LANES={}{}", lanes, o.count_rays ? " -DDS_COUNT_RAYS" : ""),
+                 o.cache_folder) {
     local_size =
         options.work_group_size != 0 ? static_cast<std::size_t>(options.work_group_size) : 8;
   }
@@ -79,7 +87,7 @@ struct Tracer::State {
   /// picture to picture.
   void prepare(const Camera& camera, const EngineSettings& engine) {
     if (!scene) fail(ErrorKind::device, "no scene was set before tracing");
-    const Features wanted = options.full_program ? all_features() : features_of(*scene, camera);
+    const Features wanted = features(*scene, camera);
     // The lens changes the program, not the numbers in the tables.
     Features numbering = wanted;
     numbering.lens = false;
@@ -89,33 +97,54 @@ struct Tracer::State {
       packed_filter = engine.filter_width;
     }
     if (!program_for || *program_for != wanted || program_math != engine.math) {
-      path_program =
-          device.build(path_program_text(wanted), build_options(engine.math), options.cache_folder);
-      path_kernel = device.kernel(path_program, "trace_paths");
+      path_kernel = device.kernel(programs.get(wanted, engine.math), "trace_paths");
       program_for = wanted;
       program_math = engine.math;
     }
+  }
+
+  /// Whether any light shines. In a scene where none does, no ray is traced.
+  bool is_lit(const Camera& camera) const { return !features_of(*scene, camera).lights.empty(); }
+
+  /// Gives the kernel a row of counts for each work-item, as its last argument.
+  void start_counting(unsigned argument, std::size_t items) {
+    if (!options.count_rays) return;
+    count_rows = device.make_buffer(items * kernels::k_ray_counts * sizeof(std::uint32_t));
+    device.fill_zero(count_rows);
+    path_kernel.set(argument, count_rows);
+  }
+  void add_counts() {
+    if (!options.count_rays) return;
+    std::vector<std::uint32_t> words(count_rows.size_bytes() / sizeof(std::uint32_t));
+    device.read(count_rows, std::as_writable_bytes(std::span(words)));
+    for (std::size_t i = 0; i < words.size(); i += kernels::k_ray_counts) {
+      ray_counts.camera += words[i + kernels::k_count_camera];
+      ray_counts.extension += words[i + kernels::k_count_extension];
+      ray_counts.shadow += words[i + kernels::k_count_shadow];
+    }
+  }
+
+  Features features(const Scene& of, const Camera& camera) const {
+    return options.full_program ? all_features() : features_of(of, camera);
   }
 
   BvhQuality quality() const {
     return options.high_quality_bvh ? BvhQuality::high : BvhQuality::medium;
   }
 
-  std::string build_options(MathMode math) const {
-    return fmt::format("{} -DDS_LANES={}",
-                       math == MathMode::strict ? k_strict_options : k_fast_options, lanes);
-  }
-
   TracerOptions options;
   Device device;
-  int lanes = 8;
+  int lanes;
+  PathPrograms programs;  ///< ends before the device does
   std::size_t local_size = 8;
   std::optional<Scene> scene;
   DeviceScene device_scene;
   std::optional<Features> packed_for, program_for;
   float packed_filter = 0;
   MathMode program_math = MathMode::strict;
-  Program path_program, geometry_program;
+  Program geometry_program;
+  Buffer count_rows;
+  RayCounts ray_counts;
   Kernel path_kernel, geometry_kernel;
   bool has_geometry_program = false;
 };
@@ -140,6 +169,22 @@ void Tracer::set_scene(const Scene& scene) {
   state_->scene = std::move(checked);
 }
 
+void Tracer::prepare(const Camera& camera, const EngineSettings& engine) {
+  state_->prepare(camera, engine);
+}
+
+bool Tracer::prepare_ahead(const Scene& scene, const Camera& camera, const EngineSettings& engine) {
+  return state_->programs.make_ahead(state_->features(scene, camera), engine.math);
+}
+
+ProgramCounts Tracer::programs() const {
+  return state_->programs.counts();
+}
+
+RayCounts Tracer::ray_counts() const {
+  return state_->ray_counts;
+}
+
 /// One picture under way: its film on the device, and how it gets more samples.
 class Tracer::Picture {
  public:
@@ -157,6 +202,7 @@ class Tracer::Picture {
       s_.path_kernel.set(argument++, *b);
     steps_argument_ = argument;
     s_.path_kernel.set(argument + 1, sums_);
+    lit_ = s_.is_lit(camera);
   }
 
   FilmSums& film() { return film_; }
@@ -171,6 +217,7 @@ class Tracer::Picture {
   const std::atomic<bool>* stop_;
   Buffer view_, sums_;
   unsigned steps_argument_ = 0;
+  bool lit_ = true;
 };
 
 void Tracer::Picture::add(std::span<const TileStep> steps,
@@ -182,6 +229,7 @@ void Tracer::Picture::add(std::span<const TileStep> steps,
   const std::size_t entries = round_up(items * lanes, tile_pixels) / tile_pixels;
   const Buffer words = s_.device.upload(step_words(film_, steps, entries));
   s_.path_kernel.set(steps_argument_, words);
+  s_.start_counting(steps_argument_ + 2, items);
   std::uint64_t samples = 0;
   for (const TileStep& step : steps)
     samples += std::uint64_t{step.end - film_.tile_spp[step.tile]} * film_.tile_pixels(step.tile);
@@ -192,7 +240,7 @@ void Tracer::Picture::add(std::span<const TileStep> steps,
     if (stop_ != nullptr && stop_->load()) fail(ErrorKind::cancelled, "stopped");
     const std::size_t count = std::min(launch, items - begin);
     const auto before = Clock::now();
-    s_.device.run(s_.path_kernel, begin, count, s_.local_size);
+    if (lit_) s_.device.run(s_.path_kernel, begin, count, s_.local_size);
     const double seconds = std::chrono::duration<double>(Clock::now() - before).count();
     begin += count;
     launch =
@@ -201,6 +249,7 @@ void Tracer::Picture::add(std::span<const TileStep> steps,
                  s_.local_size);
     progress(samples * begin / items);
   }
+  s_.add_counts();
   s_.device.read(sums_, std::as_writable_bytes(std::span(film_.planes)));
   for (const TileStep& step : steps)
     film_.tile_spp[step.tile] = step.end;
