@@ -103,7 +103,7 @@ json measure_compiling(const std::vector<Pair>& pairs) {
   const Device device("");
   const TemporaryFolder cache;
   const std::string options =
-      fmt::format("{} -DDS_LANES={}", k_strict_options, device.info().is_cpu ? 8 : 1);
+      fmt::format("{} -DDS_LANES={}", k_strict_options, device.info().is_cpu ? 16 : 1);
   json result = json::array();
   const auto compile = [&](const std::string& text, const std::vector<std::string>& names) {
     const auto begin = std::chrono::steady_clock::now();

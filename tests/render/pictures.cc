@@ -273,6 +273,7 @@ std::vector<Picture> all_effects() {
   add_every_texture(everything);
   add_local_lights(everything);
   add_far_lights(everything);
+  everything.objects.back().camera_invisible = true;  // the emitter
   Camera lens = looking_at_origin();
   lens.lens_radius_m = 0.05;
   pictures.push_back({"everything", everything, lens, small_engine()});

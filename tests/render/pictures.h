@@ -48,8 +48,8 @@ struct Picture {
   EngineSettings engine;
 };
 
-/// Pictures that together hold every material and texture of the tables, every kind of light, and
-/// the lens.
+/// Pictures that together hold every material and texture of the tables, every kind of light, the
+/// lens, and an object that the camera does not see.
 std::vector<Picture> all_effects();
 
 /// Default options with a cache of programs that all tests share.
