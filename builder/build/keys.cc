@@ -173,8 +173,7 @@ ImageKeys KeyMaker::keys(const ImageSpec& image) {
   for (std::size_t i = 0; i < 4; ++i)
     kept.add(k_part_names[i], keys.parts[i].hex());
   kept.add(k_part_names[4],
-           hash_text(canonical_kept_engine(known_scene(image), image.camera, image.engine))
-               .hex());
+           hash_text(canonical_kept_engine(known_scene(image), image.camera, image.engine)).hex());
   keys.kept = hash_text(kept.text());
   keys.geometry = geometry_key(image, keys.parts[0]);
   keys.outputs = outputs(image, keys, tone_map);
