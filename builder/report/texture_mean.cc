@@ -9,7 +9,7 @@ enum { DS_ALL_TEXTURES(DS_ROW) row_count };
 #define DS_ROW_CASE(sdl_name, prefix, PREFIX) \
   DS_TEXTURE_CASE(prefix, static_cast<int>(row_##prefix))
 #define DS_TEXTURES(X) DS_ALL_TEXTURES(DS_ROW_CASE)
-#define DS_TEXTURE_STACK 16
+#define DS_TEXTURE_STACK 32
 #include "tracer/device/texture_code.h"
 #include "tracer/kernels/all_nodes.h"
 #include "tracer/scene/type_tables.h"

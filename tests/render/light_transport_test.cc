@@ -84,6 +84,39 @@ TEST(DirectLight, PointLampOnAPlane) {
       2e-4);
 }
 
+/// Lamps of different power all around, some below the plane, whose light must not count; one
+/// stands above a black roof, whose shadow covers the plane.
+TEST(DirectLight, AnyNumberOfLampsOnAPlane) {
+  for (const int count : {2, 7, 8, 9, 20}) {  // k_most_rounds is 8
+    SCOPED_TRACE(count);
+    const FromAbove view;
+    Picture p = above_plane(view, {0.5f, 0.5f, 0.5f});
+    p.engine.spp = 64;
+    pictures::add_object(p.scene, pictures::quad({0, 0, 2.5f}, {8, 0, 0}, {0, 8, 0}),
+                         pictures::add_matte(p.scene, {0, 0, 0}));
+    for (int i = 0; i < count; ++i) {
+      const double turn = 2 * k_pi * i / count;
+      const float z = i == 0 ? 2.75f : i == 1 ? -0.5f : 0.4f + 0.2f * static_cast<float>(i % 3);
+      const float power = i == 0 ? 100.0f : static_cast<float>(1 + i % 4) / 2;
+      p.scene.lights.push_back(pictures::point_light(
+          {static_cast<float>(0.6 * std::cos(turn)), static_cast<float>(0.6 * std::sin(turn)), z},
+          {power, power, power}));
+    }
+    expect_direct_light(
+        p, view, 48,
+        [&](Vec3d at) {
+          double sum = 0;
+          for (int i = 2; i < count; ++i) {
+            const Light& lamp = p.scene.lights[static_cast<std::size_t>(i)];
+            const Vec3d way = to_double(lamp.position) - at;
+            sum += double{lamp.color.x} * way.z / std::pow(length(way), 3);
+          }
+          return sum;
+        },
+        3e-3);
+  }
+}
+
 TEST(DirectLight, SpotLampOnAPlane) {
   const FromAbove view;
   Picture p = above_plane(view, {0.5f, 0.5f, 0.5f});

@@ -158,12 +158,16 @@ void pack_lights(const Scene& scene, const Features& features, PackedScene& pack
     total += row.weight;
     sampled += row.weight > 0 ? 1 : 0;
   }
+  const bool each = rows.size() <= kernels::k_most_rounds;
   std::vector<double> shares;
   for (const LightRow& row : rows)
-    shares.push_back(row.weight > 0 ? 0.5 * row.weight / total + 0.5 / double(sampled) : 0.0);
+    shares.push_back(row.weight <= 0 ? 0.0
+                     : each          ? 1.0
+                                     : 0.5 * row.weight / total + 0.5 / double(sampled));
 
   packed.data.light_count = static_cast<std::uint32_t>(rows.size());
   packed.data.first_escape_light = packed.data.light_count;
+  packed.data.light_rounds = each ? packed.data.light_count : 1;
   packed.data.light_table = packed.tables.offset();
   add_cumulative(shares, packed.tables);
   for (std::uint32_t i = 0; i < rows.size(); ++i) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <vector>
 
 namespace ds {
 namespace {
@@ -15,10 +16,17 @@ std::uint32_t word_of(float value) {
   return std::bit_cast<std::uint32_t>(value);
 }
 
-/// Emits instructions for a texture graph, inputs before the texture that takes them.
+/// Emits instructions for texture graphs, inputs before the texture that takes them.
 class Emitter {
  public:
-  Emitter(const Scene& scene, TextureCode& code) : scene_(scene), code_(code) {}
+  /// Evaluates what the material uses more than once, and leaves it at the bottom of the stack.
+  Emitter(const Scene& scene, const Material& material, TextureCode& code)
+      : scene_(scene), code_(code), uses_(scene.textures.size()), kept_(scene.textures.size(), -1) {
+    for (const TextureRef& input : material.inputs)
+      count(input);
+    for (const TextureRef& input : material.inputs)
+      keep(input);
+  }
 
   void push(const TextureRef& ref) {
     if (ref.texture < 0) {
@@ -29,7 +37,15 @@ class Emitter {
       grow();
       return;
     }
-    const Texture& texture = scene_.textures[static_cast<std::size_t>(ref.texture)];
+    const auto index = static_cast<std::size_t>(ref.texture);
+    if (kept_[index] >= 0) {
+      begin(kernels::op_copy);
+      code_.words.push_back(static_cast<std::uint32_t>(kept_[index]));
+      end();
+      grow();
+      return;
+    }
+    const Texture& texture = scene_.textures[index];
     for (const TextureRef& input : texture.inputs)
       push(input);
     depth_ -= static_cast<int>(texture.inputs.size());
@@ -51,6 +67,25 @@ class Emitter {
   }
 
  private:
+  void count(const TextureRef& ref) {
+    if (ref.texture < 0) return;
+    const auto index = static_cast<std::size_t>(ref.texture);
+    if (++uses_[index] > 1) return;
+    for (const TextureRef& input : scene_.textures[index].inputs)
+      count(input);
+  }
+
+  void keep(const TextureRef& ref) {
+    if (ref.texture < 0) return;
+    const auto index = static_cast<std::size_t>(ref.texture);
+    if (kept_[index] >= 0) return;
+    for (const TextureRef& input : scene_.textures[index].inputs)
+      keep(input);
+    if (uses_[index] < 2) return;
+    push(ref);
+    kept_[index] = depth_ - 1;
+  }
+
   void begin(std::uint32_t op) {
     start_ = code_.words.size();
     code_.words.push_back(op);
@@ -95,6 +130,8 @@ class Emitter {
 
   const Scene& scene_;
   TextureCode& code_;
+  std::vector<int> uses_;  ///< of each texture of the scene
+  std::vector<int> kept_;  ///< its place on the stack, or -1
   std::size_t start_ = 0;
   int depth_ = 0;
 };
@@ -103,7 +140,7 @@ class Emitter {
 
 TextureCode texture_code(const Scene& scene, const Material& material) {
   TextureCode code;
-  Emitter emitter(scene, code);
+  Emitter emitter(scene, material, code);
   const NodeType& type = material_types()[static_cast<std::size_t>(material.type)];
   int slot = 0;
   for (std::size_t i = 0; i < material.inputs.size(); ++i) {

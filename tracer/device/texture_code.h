@@ -9,8 +9,9 @@
 
 namespace ds {
 
-/// Most values a texture program may have on its stack; a deeper graph is an error.
-inline constexpr int k_texture_stack_limit = 16;
+/// Most values a texture program may have on its stack, those used more than once among them; a
+/// deeper graph is an error.
+inline constexpr int k_texture_stack_limit = 32;
 
 /// The program that evaluates a material's textured inputs (kernels/texture_program.h). Operations
 /// of textures are k_first_texture_op + row of texture_types() until `number_ops` turns rows into a

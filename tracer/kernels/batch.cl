@@ -326,8 +326,8 @@ DS_FN Counts step_climbing(Batch* b, Counts n, const __global float8* nodes) {
 }
 
 /// Traces the lanes' wanted rays.
-DS_FN void trace_lanes(const __global float8* nodes, const __global float8* leaves,
-                       const LaneRays* nearest, const LaneRays* any, BatchHits* hits) {
+DS_OUT_OF_LINE void trace_lanes(const __global float8* nodes, const __global float8* leaves,
+                                const LaneRays* nearest, const LaneRays* any, BatchHits* hits) {
   Batch b;
   Counts n = {0, 0, 0};
   n.at_node = add_rays(&b, 0, 0, nodes, nearest);

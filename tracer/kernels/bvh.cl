@@ -9,9 +9,10 @@
 //     for 1/d and its use, 1 of it for the comparison of two rounded distances;
 //   - the triangle test misplaces a corner by 4 of its distance from the origin, which is at most
 //     the hit's distance and the triangle's own extent.
-// The extent's part is added to the boxes when the tree is built (k_box_error). For the rest both
-// ends of every slab are moved outwards by k_slab_error ((|o| + distance) / |d| + distance), where
-// nothing is hit beyond `distance`: constants of the ray, so they cost nothing a node.
+// The extent's part is added to the boxes when the tree is built (box_error of
+// tracer/accel/binary_tree.cc). For the rest both ends of every slab are moved outwards by
+// k_slab_error ((|o| + distance) / |d| + distance), where nothing is hit beyond `distance`:
+// constants of the ray, so they cost nothing a node.
 #pragma once
 
 #include "tracer/kernels/types.h"
@@ -62,11 +63,6 @@ DS_FN float8 lesser8(float8 a, float8 b) {
 }
 DS_FN float8 greater8(float8 a, float8 b) {
   return a > b ? a : b;
-}
-DS_FN float least_of(float8 a) {
-  const float4 b = a.lo < a.hi ? a.lo : a.hi;
-  const float2 c = b.lo < b.hi ? b.lo : b.hi;
-  return c.x < c.y ? c.x : c.y;
 }
 
 /// What box tests need of a ray, by axis.

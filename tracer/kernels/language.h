@@ -6,6 +6,10 @@
 #ifdef __OPENCL_VERSION__
 #  pragma OPENCL FP_CONTRACT OFF
 #  define DS_FN static inline __attribute__((always_inline, overloadable))
+/// Of large functions: PoCL puts a kernel's own text three times into what it compiles, but calls
+/// functions that are not inlined; their arrays then also lie on the stack once, not once a
+/// work-item.
+#  define DS_OUT_OF_LINE static __attribute__((noinline))
 #  define DS_GLOBAL __global const
 #  define leading_zeros(x) clz(x)
 #else

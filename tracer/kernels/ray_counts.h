@@ -38,8 +38,8 @@ DS_FN void store_ray_counts(const LaneRayCounts* counts, __global uint* row) {
     (paths)->counts.of[k_count_camera] += one_where((paths)->alive & ((paths)->vertices == 0u));   \
     (paths)->counts.of[k_count_extension] += one_where((paths)->alive & ((paths)->vertices > 0u)); \
     (paths)->counts.of[k_count_shadow] += one_where((paths)->shadow.wanted)
-#  define DS_STORE_RAY_COUNTS(paths) \
-    store_ray_counts(&(paths).counts, ray_counts + get_global_id(0) * k_ray_counts)
+#  define DS_RAY_COUNTS_PASSED , ray_counts + get_global_id(0) * k_ray_counts
+#  define DS_STORE_RAY_COUNTS(paths) store_ray_counts(&(paths).counts, ray_counts)
 
 #else
 
@@ -47,6 +47,7 @@ DS_FN void store_ray_counts(const LaneRayCounts* counts, __global uint* row) {
 #  define DS_RAY_COUNTS_FIELD
 #  define DS_CLEAR_RAY_COUNTS(paths)
 #  define DS_COUNT_STEP(paths)
+#  define DS_RAY_COUNTS_PASSED
 #  define DS_STORE_RAY_COUNTS(paths)
 
 #endif

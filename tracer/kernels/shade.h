@@ -115,18 +115,21 @@ DS_FN BsdfSample sample_material(const MaterialPoint* m, Viewer viewer, real2 u,
 }
 
 #ifdef DS_LIGHTS_SAMPLED
-/// A light chosen by its selection probability and a way to it. `choice` in [0, 1). The pdf
+/// The candidate of a round and a way to it: light number `round` in all lanes where there are as
+/// many rounds as lights, else one chosen by selection probability, `choice` in [0, 1). The pdf
 /// includes the choice.
-DS_FN LightSample sample_light(LightTables t, uint light_table, uint light_count, mask active,
+DS_FN LightSample sample_light(LightTables t, const SceneData* scene, uint round, mask active,
                                real3 from, real choice, real2 u) {
   LightSample result = no_light();
+  const bool each = scene->light_rounds > 1u;
+  const uint end = each ? round + 1u : scene->light_count;
   real low = (real)(0.0f);
-  for (uint i = 0; i < light_count; ++i) {
+  for (uint i = round; i < end; ++i) {
     const float probability = t.lights[i * k_light_words + k_light_probability];
-    const real high = (real)(t.tables[light_table + i]);
+    const real high = (real)(each ? 1.0f : t.tables[scene->light_table + i]);
     const mask here = active & (choice >= low) & (choice < high);
     low = high;
-    if (!any_lane(here)) continue;
+    if (probability == 0.0f || !any_lane(here)) continue;
     const uint at = i * k_light_words + k_light_parameters;
     const uint kind = as_uint(t.lights[i * k_light_words + k_light_kind]);
 #  define DS_SAMPLE_LIGHT(name, number)              \

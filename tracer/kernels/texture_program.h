@@ -4,9 +4,14 @@
 // for all of them. Instructions:
 //
 //   op_constant  r g b               push
+//   op_copy      place               push the stack's value at that place from the bottom: textures
+//                                    that are used more than once are evaluated first and stay
+//                                    there
 //   op_store     slot width          pop into `width` components of the material's inputs from
-//   `slot` on op_end op_texture + type  transform[12] numbers...   pop its inputs (the last pushed
-//   is the last input), push its value
+//                                    `slot` on
+//   op_end
+//   op_texture + type  transform[12] numbers...   pop its inputs (the last pushed is the last
+//                                    input), push its value
 //
 // word 0 is the operation, word 1 the instruction's length in words. `transform` is a 3x4 row-major
 // world-to-texture matrix, or for an image [a b c; d e f] of (s, t) = [..] (u, v, 1) in its first
@@ -15,7 +20,7 @@
 
 #include "tracer/kernels/texture.h"
 
-enum { op_end, op_constant, op_store, op_texture };
+enum { op_end, op_constant, op_copy, op_store, op_texture };
 enum { k_instruction_head = 2, k_instruction_transform = 12 };
 
 #ifdef DS_TEXTURES
@@ -51,6 +56,8 @@ DS_FN void run_texture_program(DS_GLOBAL float* code, DS_GLOBAL float* tables, S
     if (op == op_end) return;
     if (op == op_constant) {
       stack[top++] = vec((real)(words[0]), (real)(words[1]), (real)(words[2]));
+    } else if (op == op_copy) {
+      stack[top++] = stack[as_uint(words[0])];
     } else if (op == op_store) {
       const real3 value = stack[--top];
       const uint slot = as_uint(words[0]);

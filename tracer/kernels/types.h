@@ -11,6 +11,9 @@ typedef struct {
   uint first_escape_light;  ///< lights from here on are met by paths that leave the scene
   uint light_table;  ///< offset in tables: light_count cumulative selection probabilities, the last
                      ///< is 1
+  uint
+      light_rounds;  ///< candidates for a vertex' shadow ray: light_count, one of each light, whose
+                     ///< selection probabilities are then 1 or 0; or 1, of a light chosen by these
   uint filter_table;    ///< offset in tables: inverse cumulative pixel filter, k_filter_size + 1
                         ///< values
   uint material_words;  ///< words a row of materials takes
@@ -35,10 +38,11 @@ typedef struct {
 } ViewData;
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(SceneData) == 5 * 4 && sizeof(ViewData) == 31 * 4, "no padding");
+static_assert(sizeof(SceneData) == 6 * 4 && sizeof(ViewData) == 31 * 4, "no padding");
 #endif
 
 enum {
+  k_most_rounds = 8,    ///< of SceneData::light_rounds
   k_filter_size = 256,  ///< intervals of the inverse cumulative filter
   k_bvh_width = 8,
   k_bvh_depth = 32,  ///< levels of nodes; the builder refuses a deeper tree
@@ -75,7 +79,7 @@ enum {
 
   // A row of lights: a head, then what the kind needs.
   k_light_kind = 0,
-  k_light_probability = 1,  ///< of being selected
+  k_light_probability = 1,  ///< of being a candidate
   k_light_parameters = 2,
   k_light_words = 32,
 };

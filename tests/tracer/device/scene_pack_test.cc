@@ -61,29 +61,48 @@ TEST(PackScene, AMeshLightsTrianglesKnowTheirLight) {
             4);
 }
 
-TEST(PackLights, SelectionProbabilitiesSumToOneAndNoLightIsStarved) {
-  const std::vector<Light> lights = {pictures::point_light({0, 0, 1}, {1, 1, 1}),
-                                     pictures::point_light({0, 0, 2}, {1e6f, 1e6f, 1e6f}),
-                                     pictures::spot_light({0, 0, 3}, {0, 0, -1}, 30, 10, {2, 2, 2}),
-                                     pictures::constant_light({1, 1, 1}),
-                                     pictures::sun_light({0, 0, 1}, 1, {100, 100, 100})};
+TEST(PackLights, OfAFewLightsEachIsACandidate) {
+  const PackedScene packed =
+      pack(lit({pictures::point_light({0, 0, 1}, {1, 1, 1}), pictures::constant_light({1, 1, 1}),
+                pictures::sun_light({0, 0, 1}, 1, {100, 100, 100})}));
+  EXPECT_EQ(packed.data.light_rounds, 3u);
+  for (const std::uint32_t i : {0u, 1u, 2u})
+    EXPECT_EQ(number(packed.lights, i * kernels::k_light_words + kernels::k_light_probability),
+              i == 1 ? 0 : 1);
+}
+
+TEST(PackLights, OfManySelectionProbabilitiesSumToOneAndNoLightIsStarved) {
+  std::vector<Light> lights = {pictures::point_light({0, 0, 1}, {1, 1, 1}),
+                               pictures::point_light({0, 0, 2}, {1e6f, 1e6f, 1e6f}),
+                               pictures::spot_light({0, 0, 3}, {0, 0, -1}, 30, 10, {2, 2, 2}),
+                               pictures::constant_light({1, 1, 1}),
+                               pictures::sun_light({0, 0, 1}, 1, {100, 100, 100})};
+  const auto add = [&](int count) {
+    for (int i = 0; i < count; ++i)
+      lights.push_back(pictures::point_light({1, 0, 1}, {1, 1, 1}));
+  };
+  add(kernels::k_most_rounds - 5);
+  EXPECT_EQ(pack(lit(lights)).data.light_rounds, kernels::k_most_rounds);
+  add(1);
   const PackedScene packed = pack(lit(lights));
-  ASSERT_EQ(packed.data.light_count, 5u);
+  EXPECT_EQ(packed.data.light_rounds, 1u);
+  const std::uint32_t count = packed.data.light_count;
+  ASSERT_EQ(count, kernels::k_most_rounds + 1u);
   double sum = 0;
-  for (std::uint32_t i = 0; i < 5; ++i) {
+  for (std::uint32_t i = 0; i < count; ++i) {
     const float share =
         number(packed.lights, i * kernels::k_light_words + kernels::k_light_probability);
     const float high = number(packed.tables, packed.data.light_table + i);
     sum += double{share};
     EXPECT_NEAR(double{high}, sum, 1e-6);
     if (share > 0) {
-      EXPECT_GT(share, 0.1f);
+      EXPECT_GT(share, 0.49f / static_cast<float>(count));
     }
   }
   EXPECT_NEAR(sum, 1, 1e-6);
-  EXPECT_EQ(number(packed.tables, packed.data.light_table + 4), 1);
+  EXPECT_EQ(number(packed.tables, packed.data.light_table + count - 1), 1);
   // The constant light is met, never sampled; those met stand behind those sampled only.
-  EXPECT_EQ(packed.data.first_escape_light, 3u);
+  EXPECT_EQ(packed.data.first_escape_light, count - 2);
 }
 
 TEST(PackLights, BlackLightsAreNotThere) {

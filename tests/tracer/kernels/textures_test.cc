@@ -9,8 +9,9 @@ enum { DS_ALL_TEXTURES(DS_ROW) row_count };
 #define DS_ROW_CASE(sdl_name, prefix, PREFIX) \
   DS_TEXTURE_CASE(prefix, static_cast<int>(row_##prefix))
 #define DS_TEXTURES(X) DS_ALL_TEXTURES(DS_ROW_CASE)
-#define DS_TEXTURE_STACK 16
+#define DS_TEXTURE_STACK 32
 #include "tests/render/pictures.h"
+#include "tests/tracer/kernels/chi_square.h"
 #include "tracer/base/error.h"
 #include "tracer/device/texture_code.h"
 #include "tracer/kernels/all_nodes.h"
@@ -149,6 +150,22 @@ TEST(TextureProgram, EveryTextureLeavesOneValue) {
   }
 }
 
+TEST(TextureProgram, WhatIsUsedTwiceIsEvaluatedOnce) {
+  // 20 additions of the last sum to itself: a million terms, and 21 textures.
+  Scene scene;
+  pictures::add_material(scene, "matte");
+  int last = constant_texture(scene, "add", {{1, 2, 3}, {0, 0, 0}});
+  for (int i = 0; i < 20; ++i) {
+    const int twice = pictures::add_texture(scene, "add", {{}, last});
+    scene.textures.back().inputs[1] = {{}, last};
+    last = twice;
+  }
+  scene.materials[0].inputs[0] = {{}, last};
+  const TextureCode code = texture_code(scene, scene.materials[0]);
+  EXPECT_EQ(code.op_words.size(), 21u);
+  expect_color(run(scene, {vec(0, 0, 0), 0, 0}), {1048576, 2 * 1048576, 3 * 1048576});
+}
+
 TEST(TextureProgram, TooDeepAGraphIsAnError) {
   const auto depth = [](int levels) {
     return value_of([&](Scene& s) {
@@ -161,8 +178,8 @@ TEST(TextureProgram, TooDeepAGraphIsAnError) {
       return last;
     });
   };
-  EXPECT_EQ(depth(14).x, 16);
-  EXPECT_THROW(depth(15), Error);
+  EXPECT_EQ(depth(k_texture_stack_limit - 2).x, k_texture_stack_limit);
+  EXPECT_THROW(depth(k_texture_stack_limit - 1), Error);
 }
 
 TEST(Checkerboard, KnownCells) {
@@ -206,7 +223,7 @@ TEST(Noise, IsBoundedAndHasMeanZeroAndNoJumps) {
   for (int i = 0; i < 200000; ++i) {
     const real3 p = vec(u(random), u(random), u(random));
     const float n = gradient_noise(p);
-    ASSERT_TRUE(n >= -1.0001f && n <= 1.0001f);
+    ASSERT_LE(std::fabs(n), 1.2248f);  // in a cell's middle with all gradients towards it
     sum += double{n};
     squares += double{n} * double{n};
     ASSERT_LT(std::fabs(gradient_noise(vec(p.x + 1e-4f, p.y, p.z)) - n), 1e-3f);
@@ -215,6 +232,29 @@ TEST(Noise, IsBoundedAndHasMeanZeroAndNoJumps) {
   EXPECT_GT(squares / 200000, 0.03);
   for (const float x : {-3.0f, 0.0f, 5.0f})
     EXPECT_EQ(gradient_noise(vec(x, 2, -7)), 0);
+}
+
+TEST(Noise, GradientsAreEquallyFrequentAndNeighboursIndependent) {
+  // 8 gradients; 64 pairs of a lattice point's and a neighbour's, in seven directions.
+  constexpr std::uint32_t k_side = 64;
+  const auto gradient = [](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    return noise_signs(x * k_noise_x + y * k_noise_y + z * k_noise_z) >> 29;
+  };
+  std::vector<double> single(8);
+  std::vector<std::vector<double>> pairs(7, std::vector<double>(64));
+  for (std::uint32_t i = 0; i < k_side * k_side * k_side; ++i) {
+    // Around the origin, where textures are.
+    const std::uint32_t x = i % k_side - k_side / 2, y = i / k_side % k_side - k_side / 2,
+                        z = i / k_side / k_side - k_side / 2;
+    const std::uint32_t own = gradient(x, y, z);
+    single[own] += 1;
+    for (std::uint32_t d = 1; d < 8; ++d)
+      pairs[d - 1][own * 8 + gradient(x + (d & 1), y + (d >> 1 & 1), z + (d >> 2))] += 1;
+  }
+  constexpr double k_points = double{k_side} * k_side * k_side;
+  EXPECT_GT(chance_of_counts(single, std::vector<double>(8, k_points / 8)), sidak(8));
+  for (const auto& counts : pairs)
+    EXPECT_GT(chance_of_counts(counts, std::vector<double>(64, k_points / 64)), sidak(8));
 }
 
 TEST(Noise, HasNoPeriodOf256) {
