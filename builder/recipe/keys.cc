@@ -161,6 +161,10 @@ constexpr std::array k_keys = {
             "engine.error != false",
             "Most samples a pixel, on the picture's average, to reach engine.error with; a picture "
             "that needs more is made with these and listed at the end of the build"},
+    KeySpec{"engine.error_region", choice, "", "\"image\"", k_any, R"("image" | "model")",
+            "engine.error != false",
+            "Which pixels engine.error is of: all, or those where the mask shows the model; others "
+            "then get 16 samples"},
     KeySpec{"engine.keep_film", boolean, "", "false", k_any, "", "",
             "Keep each film's sums in the store, 36 bytes a pixel: more spp, or a smaller error, "
             "then traces the missing samples only"},

@@ -47,6 +47,7 @@ EngineSettings read_engine(const Settings& settings) {
     ErrorTarget& target = engine.target.emplace();
     target.error = settings.number("engine.error");
     target.max_spp = settings.integer("engine.max_spp");
+    target.region = choice<ErrorRegion, 2>(settings, "engine.error_region", {"image", "model"});
   }
   engine.depth_total = settings.integer("engine.depth_total");
   engine.depth_diffuse = settings.integer("engine.depth_diffuse");

@@ -102,6 +102,8 @@ Hash128 probe_key(const ImageKeys& keys, const Recipe& recipe, const std::string
   text.add("render", keys.render.hex());
   text.add("files", keys.files.hex());
   text.add("low_spp", probe_samples(recipe.engine).low);
+  if (recipe.engine.target && recipe.engine.target->region == ErrorRegion::model)
+    text.add("error_region", "model");
   text.add("keep_film", recipe.keep_film);
   text.add("device", device);
   return hash_text(text.text());

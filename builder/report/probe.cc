@@ -124,8 +124,9 @@ class Probing {
         high_(recipe, samples_.high, std::nullopt, images, inputs, renderer, folder / "high") {
     if (!by_error) return;
     // An error that no picture reaches: max_spp ends it.
-    target_.emplace(recipe, samples_.high, ErrorTarget{1e-6, k_target_probe_spp, {}}, images,
-                    inputs, renderer, folder / "target");
+    ErrorTarget target{1e-6, k_target_probe_spp, {}};
+    if (recipe.engine.target) target.region = recipe.engine.target->region;
+    target_.emplace(recipe, samples_.high, target, images, inputs, renderer, folder / "target");
     pixels_ = double(recipe.engine.width) * recipe.engine.height;
   }
 

@@ -83,6 +83,7 @@ TEST_F(KeysTest, TheKeptKeyLeavesOutWhenToStop) {
   EXPECT_EQ(kept_with([](EngineSettings& e) { e.target->max_spp *= 2; }), scheduled);
   EXPECT_EQ(kept_with([](EngineSettings& e) { e.spp += 1; }), scheduled);
   EXPECT_NE(kept_with([](EngineSettings& e) { e.target->tone_map.gamma = 1; }), scheduled);
+  EXPECT_NE(kept_with([](EngineSettings& e) { e.target->region = ErrorRegion::model; }), scheduled);
   image_.camera.fov_deg += 1;
   EXPECT_NE(kept_with(nothing), scheduled);
 }

@@ -65,6 +65,10 @@ TEST(RecipeKeys, HaveTheDefaultsOfTheStructsTheyFill) {
   EXPECT_EQ(recipe.engine.spp, engine.spp);
   EXPECT_FALSE(recipe.engine.target);
   EXPECT_EQ(folder.read("engine.error = 0.5").engine.target->max_spp, ErrorTarget{}.max_spp);
+  EXPECT_EQ(folder.read("engine.error = 0.5").engine.target->region, ErrorTarget{}.region);
+  EXPECT_EQ(
+      folder.read("engine.error = 0.5\nengine.error_region = \"model\"").engine.target->region,
+      ErrorRegion::model);
   EXPECT_EQ(recipe.engine.outlier_limit, engine.outlier_limit);
   EXPECT_EQ(recipe.rejected_limit, Recipe{}.rejected_limit);
   EXPECT_EQ(recipe.engine.depth_total, engine.depth_total);

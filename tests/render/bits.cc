@@ -17,9 +17,19 @@ std::string geometry_hash_of(const Geometry& geometry) {
   return hash_text(mask + depth).hex();
 }
 
+/// all_effects(), and the one that has them all by engine.error's schedule.
+std::vector<Picture> pictures_of_bits() {
+  std::vector<Picture> pictures = all_effects();
+  Picture scheduled = pictures.back();
+  scheduled.name = "scheduled";
+  scheduled.engine.target = ErrorTarget{0.02, 48, scheduled.scene.tone_map};
+  pictures.push_back(scheduled);
+  return pictures;
+}
+
 std::vector<Picture> wanted_pictures(const BitsRequest& request) {
   std::vector<Picture> pictures;
-  for (const Picture& picture : all_effects())
+  for (const Picture& picture : pictures_of_bits())
     if (request.names.empty() ||
         std::find(request.names.begin(), request.names.end(), picture.name) != request.names.end())
       pictures.push_back(picture);
@@ -29,7 +39,10 @@ std::vector<Picture> wanted_pictures(const BitsRequest& request) {
     EngineSettings& engine = picture.engine;
     if (request.width > 0) engine.width = request.width;
     if (request.height > 0) engine.height = request.height;
-    if (request.spp > 0) engine.spp = request.spp;
+    if (request.spp > 0) {
+      engine.spp = request.spp;
+      engine.target.reset();
+    }
   }
   return pictures;
 }

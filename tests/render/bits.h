@@ -9,11 +9,12 @@
 
 namespace ds::pictures {
 
-/// Which pictures to make, and how. Sizes of 0: as the pictures say.
+/// Which pictures to make, and how. Sizes of 0: as the pictures say; with `spp` the picture by an
+/// error target has that many samples as well.
 struct BitsRequest {
   TracerOptions tracer = tracer_options();
   int width = 0, height = 0, spp = 0;
-  std::vector<std::string> names;  ///< empty: all of all_effects()
+  std::vector<std::string> names;  ///< empty: all of all_effects(), and "scheduled"
 };
 
 /// "host_version", "geometry program" and, for each picture, "NAME program" (of the specialised

@@ -3,6 +3,7 @@
 
 #include "tests/render/pictures.h"
 #include "tracer/kernels/layout.h"
+#include "tracer/scene/sdl.h"
 
 #include <gtest/gtest.h>
 
@@ -184,6 +185,38 @@ TEST(Schedule, BitsDoNotDependOnLanesOrWorkGroups) {
   }
 }
 
+TEST(Schedule, OfARegionOnlyItsErrorCounts) {
+  Picture picture = with_target(ball(), k_fine);
+  const Film whole = pictures::trace(picture);
+  picture.engine.target->region = ErrorRegion::model;
+  picture.scene.objects.back().id = k_model_object_id;  // the ball
+  Tracer tracer(pictures::tracer_options());
+  tracer.set_scene(picture.scene);
+  const Film film = tracer.trace(picture.camera, picture.engine);
+  const auto mask = tracer.trace_geometry(picture.camera, 60, 44).mask;
+  EXPECT_LE(*film.facts.developed_high, k_fine);
+  EXPECT_EQ(film.facts.least_spp, Schedule::k_first_spp);
+  EXPECT_GT(film.facts.most_spp, Schedule::k_first_spp);
+  Picture truth = ball();
+  truth.engine.spp = 8192;
+  truth.engine.seed = 1;
+  const Film converged = pictures::trace(truth);
+  Film ball_seen, ball_converged;
+  for (std::size_t i = 0; i < mask.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (mask[i] == 0) continue;
+      ball_seen.rgb.push_back(film.rgb[3 * i + c]);
+      ball_converged.rgb.push_back(converged.rgb[3 * i + c]);
+    }
+  const double error = developed_difference(ball_seen, ball_converged, picture.scene.tone_map);
+  EXPECT_LE(error, k_fine);
+  EXPECT_NEAR(*film.facts.developed_error / error, 1, 0.3);
+
+  // Where the model is not seen, all pixels count.
+  picture.scene.objects.back().id = k_model_object_id + 1;
+  EXPECT_EQ(pictures::film_hash(pictures::trace(picture)), pictures::film_hash(whole));
+}
+
 TEST(Schedule, MaxSppEndsAPictureThatNeedsMore) {
   const Picture picture = with_target(ball(), 0.001, 40);
   const Film film = pictures::trace(picture);
@@ -196,7 +229,7 @@ TEST(Schedule, MaxSppEndsAPictureThatNeedsMore) {
 
 TEST(Kept, MoreSamplesGoOnToTheBitsOfOneGo) {
   Picture picture = ball();
-  for (const auto& [first, then] : {std::pair{1, 2}, {4, 7}, {7, 16}}) {
+  for (const auto& [first, then] : {std::pair{1, 2}, {4, 7}, {7, 16}, {64, 256}}) {
     FilmSums kept;
     picture.engine.spp = first;
     trace_on(picture, kept);

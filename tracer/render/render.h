@@ -15,11 +15,16 @@ namespace ds {
 
 enum class MathMode { strict, fast };
 
+/// Which pixels an error is of: all, or those whose centre shows the model (Geometry::mask); a
+/// picture that shows none of it is looked at as a whole.
+enum class ErrorRegion { image, model };
+
 /// Samples until a picture is as exact as wanted, in place of the same number for every pixel.
 struct ErrorTarget {
   double error = 0.02;  ///< largest upper end of the developed picture's error, see Schedule
   int max_spp = 1024;   ///< samples a pixel on the picture's average, 16 .. 2^24: the most it gets
   ToneMap tone_map{};   ///< what it is developed with
+  ErrorRegion region = ErrorRegion::image;
 };
 
 /// Everything about how a picture is traced that is not scene or camera. All of it is in the render
@@ -152,6 +157,8 @@ class Tracer {
   bool runs_on_cpu() const;
 
  private:
+  std::vector<std::uint8_t> error_region(const Camera& camera, const EngineSettings& engine);
+
   struct State;
   class Picture;
   std::unique_ptr<State> state_;

@@ -35,8 +35,14 @@ std::vector<TileStep> steps_to(const FilmSums& film, std::uint32_t spp) {
   return steps;
 }
 
-Schedule::Schedule(const ErrorTarget& target, const FilmSums& film)
-    : target_(target), film_(film), state_(film.schedule), tiles_(film.tile_spp.size()) {
+Schedule::Schedule(const ErrorTarget& target, const FilmSums& film,
+                   std::vector<std::uint8_t> region)
+    : target_(target),
+      film_(film),
+      region_(std::move(region)),
+      state_(film.schedule),
+      tiles_(film.tile_spp.size()) {
+  DS_ASSERT(region_.empty() || region_.size() == film.pixels());
   DS_ASSERT(target.error > 0 && target.max_spp >= static_cast<int>(k_first_spp));
   if (film.samples() == 0) return;
   DS_ASSERT(state_.tone_scale.has_value());
@@ -48,6 +54,8 @@ Schedule::Schedule(const ErrorTarget& target, const FilmSums& film)
 void Schedule::measure(std::size_t number) {
   Tile tile;
   film_.visit_tile(number, [&](std::size_t pixel) {
+    if (!region_.empty() && region_[pixel] == 0) return;
+    ++tile.pixels;
     const PixelEstimate p = pixel_of(film_, pixel, film_.tile_spp[number]);
     std::array<float, 3> more{}, less{};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -79,7 +87,7 @@ double Schedule::gain(std::size_t tile) const {
   int count = 0;
   for (std::size_t v = y > 0 ? y - 1 : 0; v < std::min(y + 2, rows); ++v)
     for (std::size_t u = x > 0 ? x - 1 : 0; u < std::min(x + 2, columns); ++u) {
-      if (u == x && v == y) continue;
+      if ((u == x && v == y) || tiles_[v * columns + u].pixels == 0) continue;
       around += sample_variance(v * columns + u);
       ++count;
     }
@@ -92,7 +100,8 @@ double Schedule::gain(std::size_t tile) const {
 std::vector<TileStep> Schedule::greatest_gains() const {
   std::vector<std::pair<double, std::size_t>> gains;
   for (std::size_t tile = 0; tile < tiles_.size(); ++tile)
-    if (film_.tile_spp[tile] < k_most_spp) gains.emplace_back(gain(tile), tile);
+    if (tiles_[tile].pixels > 0 && film_.tile_spp[tile] < k_most_spp)
+      gains.emplace_back(gain(tile), tile);
   std::sort(gains.begin(), gains.end(), [](const auto& a, const auto& b) {
     return a.first > b.first || (a.first == b.first && a.second < b.second);
   });
@@ -129,11 +138,13 @@ void Schedule::traced(const std::vector<TileStep>& steps) {
 ErrorEstimate Schedule::error() const {
   ErrorSum sum;
   double developed = 0;
+  std::size_t pixels = 0;
   for (const Tile& tile : tiles_) {
     sum += tile.error;
     developed += tile.developed;
+    pixels += tile.pixels;
   }
-  const double values = 3 * static_cast<double>(film_.pixels());
+  const double values = 3 * static_cast<double>(pixels);
   return sum.estimate(developed / values, values);
 }
 

@@ -30,7 +30,8 @@ std::vector<TileStep> steps_to(const FilmSums& film, std::uint32_t spp);
 /// difference and D the tone curve, d^2 = ((D(m + h) - D(m))^2 + (D(m - h) - D(m))^2) / 2, summed
 /// over r, g, b. film_error.h says why, and what interval that has. The picture's error is
 /// sqrt(mean d^2) / mean D(m) over all pixels and channels. D is before rounding to 8 bits, its
-/// scale the one the tone map finds after the first step.
+/// scale the one the tone map finds after the first step. With a region "all pixels" are its own,
+/// and tiles that hold none of them keep what the first step gives.
 ///
 /// First every pixel gets k_first_spp. Then, time and again, the tiles of greatest gain are
 /// doubled, until they have taken 1 / k_batch of the samples so far. With errors that fall as 1 / n
@@ -46,8 +47,9 @@ class Schedule {
   static constexpr std::uint32_t k_first_spp = 16;
   static constexpr std::uint64_t k_batch = 16;
 
-  /// The film must outlive this. One with samples must be of a Schedule for the same tone map.
-  Schedule(const ErrorTarget& target, const FilmSums& film);
+  /// The film must outlive this. One with samples must be of a Schedule for the same tone map and
+  /// region. `region`: not 0 where a pixel belongs to it, one at least; empty: all do.
+  Schedule(const ErrorTarget& target, const FilmSums& film, std::vector<std::uint8_t> region = {});
 
   /// What to trace next; nothing once the error is reached or the next step would pass max_spp.
   std::vector<TileStep> next();
@@ -64,7 +66,8 @@ class Schedule {
  private:
   struct Tile {
     ErrorSum error;
-    double developed = 0;  ///< sum of D(m) over pixels and channels
+    double developed = 0;    ///< sum of D(m) over pixels and channels
+    std::size_t pixels = 0;  ///< of the region
   };
   void measure(std::size_t tile);
   double sample_variance(std::size_t tile) const;
@@ -73,6 +76,7 @@ class Schedule {
 
   ErrorTarget target_;
   const FilmSums& film_;
+  std::vector<std::uint8_t> region_;
   ScheduleState state_;
   std::optional<ToneCurve> curve_;
   std::vector<Tile> tiles_;

@@ -255,6 +255,14 @@ void Tracer::Picture::add(std::span<const TileStep> steps,
     film_.tile_spp[step.tile] = step.end;
 }
 
+/// The pixels that the picture's error is of, for Schedule.
+std::vector<std::uint8_t> Tracer::error_region(const Camera& camera, const EngineSettings& engine) {
+  if (engine.target->region == ErrorRegion::image) return {};
+  std::vector<std::uint8_t> mask = trace_geometry(camera, engine.width, engine.height).mask;
+  const bool shown = std::any_of(mask.begin(), mask.end(), [](std::uint8_t m) { return m != 0; });
+  return shown ? mask : std::vector<std::uint8_t>{};
+}
+
 Film Tracer::trace(const Camera& camera, const EngineSettings& engine,
                    const std::function<void(const TraceProgress&)>& progress,
                    const std::atomic<bool>* stop, FilmSums* kept) {
@@ -273,7 +281,7 @@ Film Tracer::trace(const Camera& camera, const EngineSettings& engine,
   };
   Film film;
   if (engine.target) {
-    Schedule schedule(*engine.target, picture.film());
+    Schedule schedule(*engine.target, picture.film(), error_region(camera, engine));
     for (auto steps = schedule.next(); !steps.empty(); steps = schedule.next()) {
       trace_steps(steps);
       schedule.traced(steps);

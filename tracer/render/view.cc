@@ -127,6 +127,7 @@ std::string canonical_kept_engine(const Scene& scene, const Camera& camera,
     text.add("schedule_version", k_schedule_version);
     for (const auto& [name, value] : parse_canonical(canonical_tone_map(engine.target->tone_map)))
       text.add("schedule." + name, value);
+    if (engine.target->region == ErrorRegion::model) text.add("schedule.region", "model");
   }
   text.add("depth_total", engine.depth_total);
   text.add("depth_diffuse", engine.depth_diffuse);
