@@ -26,7 +26,9 @@ constexpr const char* k_add_given = R"cl(
 __kernel void add_given(const __global float* restrict samples, const __global uint* restrict words,
                         const __global ViewData* restrict view_data, __global float* restrict film) {
   const ViewData view = *view_data;
-  const Pixels pixels = pixels_of(0u, (uint)get_global_id(0) * (uint)DS_LANES % 64u, &view);
+  const uint first = (uint)get_global_id(0) * (uint)DS_LANES;
+  const Pixels pixels =
+      pixels_of(first / (uint)k_tile_pixels, first % (uint)k_tile_pixels, &view);
   Sums sums;
   load_sums(&sums, film, &pixels, &view);
   for (uint i = 0u; i < words[0]; ++i) {
@@ -64,7 +66,7 @@ Film film_of_samples(const std::vector<Vec3>& samples, MathMode math, int lanes,
   kernel.set(3, film);
   device.run(kernel, 0, static_cast<std::size_t>(64 / lanes), 1);
   device.read(film, std::as_writable_bytes(std::span(sums.planes)));
-  sums.tile_spp[0] = static_cast<std::uint32_t>(samples.size());
+  std::fill(sums.tile_spp.begin(), sums.tile_spp.end(), static_cast<std::uint32_t>(samples.size()));
   return film_of(sums);
 }
 

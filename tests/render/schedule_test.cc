@@ -75,7 +75,7 @@ double mean(const Film& film) {
 
 TEST(Schedule, BeginsWithEveryPixelAndThenDoublesTheTilesOfGreatestGain) {
   // Two by two tiles of whole pixels; only the last tile's halves differ.
-  FilmSums film = empty_film(16, 16);
+  FilmSums film = empty_film(8, 8);
   const ErrorTarget target{0.001, 1 << 20, ToneMap{}};
   Schedule schedule(target, film);
   const auto first = schedule.next();
@@ -85,8 +85,8 @@ TEST(Schedule, BeginsWithEveryPixelAndThenDoublesTheTilesOfGreatestGain) {
     film.tile_spp[step.tile] = step.end;
     film.visit_tile(step.tile, [&](std::size_t pixel) {
       for (std::size_t c = 0; c < 3; ++c) {
-        film.planes[c * 256 + pixel] = 8;
-        film.planes[(kernels::k_film_halves + c) * 256 + pixel] = step.tile == 3 ? 1.0f : 0.0f;
+        film.planes[c * 64 + pixel] = 8;
+        film.planes[(kernels::k_film_halves + c) * 64 + pixel] = step.tile == 3 ? 1.0f : 0.0f;
       }
     });
   }
@@ -102,7 +102,7 @@ TEST(Schedule, BeginsWithEveryPixelAndThenDoublesTheTilesOfGreatestGain) {
 }
 
 TEST(Schedule, ATileThatLooksExactAmongNoisyOnesIsNotLeft) {
-  FilmSums film = empty_film(24, 24);
+  FilmSums film = empty_film(12, 12);
   Schedule schedule({1e-6, 1 << 20, ToneMap{}}, film);
   std::vector<TileStep> steps = schedule.next();
   for (int round = 0; round < 200; ++round) {
@@ -111,8 +111,8 @@ TEST(Schedule, ATileThatLooksExactAmongNoisyOnesIsNotLeft) {
       const auto n = static_cast<float>(step.end);
       film.visit_tile(step.tile, [&](std::size_t pixel) {
         for (std::size_t c = 0; c < 3; ++c) {
-          film.planes[c * 576 + pixel] = n / 2;
-          film.planes[(kernels::k_film_halves + c) * 576 + pixel] =
+          film.planes[c * 144 + pixel] = n / 2;
+          film.planes[(kernels::k_film_halves + c) * 144 + pixel] =
               step.tile == 4 ? 0.0f : 0.1f * std::sqrt(n);
         }
       });

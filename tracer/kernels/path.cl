@@ -45,13 +45,12 @@ typedef struct {
   LightTables lights;
 } SceneTables;
 
-/// Pixels of a work-item in its tile: within the tile blocks of 4x4, so that lanes look at
-/// neighbouring things. `first`: place in the tile of lane 0's pixel, 0 .. 63.
+/// Pixels of a work-item in its tile, row by row: lanes look at neighbouring things. `first`: place
+/// in the tile of lane 0's pixel.
 DS_FN Pixels pixels_of(uint tile, uint first, const ViewData* view) {
   const natural i = first + DS_LANE_NUMBERS;
-  const natural block = i >> 4;
-  const natural x = (tile % view->tiles_x) * 8u + (block & 1u) * 4u + (i & 3u);
-  const natural y = (tile / view->tiles_x) * 8u + (block >> 1) * 4u + ((i >> 2) & 3u);
+  const natural x = (tile % view->tiles_x) * (uint)k_tile_side + i % (uint)k_tile_side;
+  const natural y = (tile / view->tiles_x) * (uint)k_tile_side + i / (uint)k_tile_side;
   Pixels p;
   p.inside = (x < view->width) & (y < view->height);
   p.index = choose_natural(p.inside, y * view->width + x, (natural)(0u));
@@ -548,7 +547,8 @@ __kernel void trace_paths(
     const __global ViewData* restrict view_data, const __global uint* restrict steps,
     __global float* restrict film DS_RAY_COUNTS_ARGUMENT) {
   const uint item = (uint)get_global_id(0);
-  const __global uint* step = steps + item * (uint)DS_LANES / 64u * (uint)k_step_words;
+  const __global uint* step =
+      steps + item * (uint)DS_LANES / (uint)k_tile_pixels * (uint)k_step_words;
   const uint begin = step[k_step_begin];
   const uint end = step[k_step_end];
   if (begin >= end) return;
@@ -563,6 +563,6 @@ __kernel void trace_paths(
   t.lights.lights = lights;
   t.lights.tables = tables;
   t.lights.triangles = triangles;
-  trace_pixels(step[k_step_tile], item * (uint)DS_LANES % 64u, begin, end, scene_data, view_data,
-               &t, film DS_RAY_COUNTS_PASSED);
+  trace_pixels(step[k_step_tile], item * (uint)DS_LANES % (uint)k_tile_pixels, begin, end,
+               scene_data, view_data, &t, film DS_RAY_COUNTS_PASSED);
 }

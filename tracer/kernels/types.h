@@ -29,7 +29,7 @@ typedef struct {
   float lens_up[3];
   float focus_distance;  ///< along forward, metres
   uint width, height;
-  uint tiles_x;        ///< tiles of 8x8 pixels in a row of tiles
+  uint tiles_x;        ///< tiles in a row of tiles
   float sample_limit;  ///< greatest component a sample may have; what is brighter is scaled down
   uint seed_low, seed_high;
   uint depth_total, depth_diffuse, depth_glossy, depth_specular;
@@ -104,6 +104,9 @@ enum {
   k_film_planes = 14,
 };
 
-/// What a launch traces: for each tile of 8x8 pixels its number, row by row, and the numbers of its
+/// Pixels that samples are added to together: squares of 4x4.
+enum { k_tile_side = 4, k_tile_pixels = 16 };
+
+/// What a launch traces: for each tile its number, row by row, and the numbers of its
 /// pixels' first sample and the one behind the last. An entry with no samples does nothing.
 enum { k_step_tile = 0, k_step_begin = 1, k_step_end = 2, k_step_words = 3 };

@@ -15,7 +15,7 @@
 
 namespace ds {
 
-inline constexpr int k_tile_size = 8;  ///< pixels a side: what samples are added to
+inline constexpr int k_tile_size = 4;  ///< pixels a side: what samples are added to
 
 /// What a Schedule must remember of a film beside its samples.
 struct ScheduleState {

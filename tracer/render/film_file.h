@@ -14,7 +14,7 @@ namespace ds {
 ///
 ///   file     = head tiles planes checksum
 ///   head     = "dsbuild film 1\n" { name "=" value "\n" } "\n"
-///   tiles    = { u32 }       samples a pixel of each tile of 8x8 pixels, row by row
+///   tiles    = { u32 }       samples a pixel of each tile of 4x4 pixels, row by row
 ///   planes   = { float32 }   width * height values of each plane that "planes" lists, row by row
 ///   checksum = XXH3-128 of all before it, 16 bytes, most significant first
 ///

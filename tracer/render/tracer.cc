@@ -79,8 +79,11 @@ struct Tracer::State {
         programs(device,
                  fmt::format("-DDS_LANES={}{}", lanes, o.count_rays ? " -DDS_COUNT_RAYS" : ""),
                  o.cache_folder) {
-    local_size =
-        options.work_group_size != 0 ? static_cast<std::size_t>(options.work_group_size) : 8;
+    // A CPU's threads take groups as they get done: small ones share a launch out evenly. A GPU
+    // runs a group's items side by side.
+    local_size = options.work_group_size != 0 ? static_cast<std::size_t>(options.work_group_size)
+                 : device.info().is_cpu       ? 1
+                                              : 64;
   }
 
   /// The packed scene depends on the features (numbers) and the filter: both may change from

@@ -4,6 +4,7 @@
 #include "tracer/base/canonical.h"
 #include "tracer/base/error.h"
 #include "tracer/device/program_text.h"
+#include "tracer/render/film.h"
 #include "tracer/scene/sdl.h"
 
 #include <algorithm>
@@ -76,7 +77,8 @@ kernels::ViewData view_data(const Camera& camera, const EngineSettings& engine) 
   v.focus_distance = static_cast<float>(camera.focus_distance_m);
   v.width = static_cast<std::uint32_t>(engine.width);
   v.height = static_cast<std::uint32_t>(engine.height);
-  v.tiles_x = (v.width + 7) / 8;
+  static_assert(kernels::k_tile_side == k_tile_size);
+  v.tiles_x = (v.width + kernels::k_tile_side - 1) / kernels::k_tile_side;
   v.sample_limit =
       engine.outlier_limit > 0 ? std::min(engine.outlier_limit, k_sample_most) : k_sample_most;
   v.seed_low = static_cast<std::uint32_t>(engine.seed);
