@@ -21,12 +21,20 @@ namespace {
 
 class RealSceneTracer : public SceneTracer {
  public:
-  explicit RealSceneTracer(const TracerOptions& options) : tracer_(options) {}
+  explicit RealSceneTracer(const TracerOptions& options)
+      : tracer_(options), plain_tracer_(with_plain_sums(options)) {}
 
-  void set_scene(const Scene& scene) override { tracer_.set_scene(scene); }
+  void set_scene(const Scene& scene) override {
+    tracer_.set_scene(scene);
+    plain_tracer_.set_scene(scene);
+  }
   Film trace(const Camera& camera, const EngineSettings& engine,
              const std::atomic<bool>& stop) override {
     return tracer_.trace(camera, engine, {}, &stop);
+  }
+  Film trace_plain(const Camera& camera, const EngineSettings& engine,
+                   const std::atomic<bool>& stop) override {
+    return plain_tracer_.trace(camera, engine, {}, &stop);
   }
   void trace_on(const Camera& camera, const EngineSettings& engine, FilmSums& sums,
                 const std::atomic<bool>& stop) override {
@@ -45,7 +53,12 @@ class RealSceneTracer : public SceneTracer {
   }
 
  private:
-  Tracer tracer_;
+  static TracerOptions with_plain_sums(TracerOptions options) {
+    options.plain_sums = true;
+    return options;
+  }
+
+  Tracer tracer_, plain_tracer_;
   bool is_cpu_ = tracer_.runs_on_cpu();
 };
 

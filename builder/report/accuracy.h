@@ -28,6 +28,9 @@ class SceneTracer {
   virtual void set_scene(const Scene& scene) = 0;
   virtual Film trace(const Camera& camera, const EngineSettings& engine,
                      const std::atomic<bool>& stop) = 0;
+  /// As trace, but samples are added in plain floats.
+  virtual Film trace_plain(const Camera& camera, const EngineSettings& engine,
+                           const std::atomic<bool>& stop) = 0;
   /// Goes on from `sums`, a film of this picture with fewer samples or an empty one.
   virtual void trace_on(const Camera& camera, const EngineSettings& engine, FilmSums& sums,
                         const std::atomic<bool>& stop) = 0;

@@ -32,25 +32,27 @@ class Choosing {
   Choosing(SceneTracer& tracer, int spp, const std::atomic<bool>& stop)
       : tracer_(tracer), spp_(spp), stop_(stop) {}
 
-  Variant trace(const Subject& subject) const {
+  Variant trace(const Subject& subject, bool plain_sums = false) const {
     Variant variant;
-    picture(subject, 1, 0);  // packs, compiles
-    variant.a = timed(subject, 0, variant.seconds);
-    variant.b = timed(subject, 1, variant.seconds);
+    picture(subject, 1, 0, plain_sums);  // packs, compiles
+    variant.a = timed(subject, 0, plain_sums, variant.seconds);
+    variant.b = timed(subject, 1, plain_sums, variant.seconds);
     return variant;
   }
 
  private:
-  Film picture(const Subject& subject, int spp, int number) const {
+  Film picture(const Subject& subject, int spp, int number, bool plain_sums) const {
     EngineSettings engine = subject.engine;
     engine.spp = spp;
     engine.target.reset();
     engine.seed = report_seed(subject.engine.seed, k_first_seed + number);
-    return tracer_.trace(subject.camera, engine, stop_);
+    return plain_sums ? tracer_.trace_plain(subject.camera, engine, stop_)
+                      : tracer_.trace(subject.camera, engine, stop_);
   }
-  Film timed(const Subject& subject, int number, std::vector<double>& seconds) const {
+  Film timed(const Subject& subject, int number, bool plain_sums,
+             std::vector<double>& seconds) const {
     const double start = tracer_.busy();
-    Film film = picture(subject, spp_, number);
+    Film film = picture(subject, spp_, number, plain_sums);
     seconds.push_back(tracer_.busy() - start);
     return film;
   }
@@ -104,6 +106,8 @@ std::vector<ChoiceCost> measure_choices(SceneTracer& tracer, const Subject& subj
   const Variant all_paths = choosing.trace(edited(*deepest));
 
   std::vector<ChoiceCost> costs;
+  costs.push_back(
+      cost_of({"sums", "plain", 0, false, {}}, choosing.trace(subject, true), base, base));
   // First those of this very scene, so that it is packed once.
   for (const bool scene : {false, true})
     for (const Choice& choice : choices) {

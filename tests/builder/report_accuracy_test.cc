@@ -36,6 +36,12 @@ class KnownTracer : public SceneTracer {
     film.relative_error = noise / mean;
     return film;
   }
+  Film trace_plain(const Camera& camera, const EngineSettings& engine,
+                   const std::atomic<bool>& stop) override {
+    Film film = trace(camera, engine, stop);
+    clock_ -= 0.0005 * engine.spp;
+    return film;
+  }
   /// Samples of 2^24, then of 1, which a plain float sum of 2^24 loses.
   void trace_on(const Camera&, const EngineSettings& engine, FilmSums& sums,
                 const std::atomic<bool>&) override {
@@ -136,6 +142,8 @@ TEST_F(AccuracyTest, FindsWhatChoicesCost) {
   // Half of 64 spp.
   EXPECT_NEAR(costs.at("math fast").time.value, (0.25 + 0.032) / (0.25 + 0.064), 1e-9);
   EXPECT_FALSE(costs.at("math fast").bias.has_value());
+  EXPECT_NEAR(costs.at("sums plain").time.value, (0.25 + 0.048) / (0.25 + 0.064), 1e-9);
+  EXPECT_FALSE(costs.at("sums plain").bias.has_value());
   EXPECT_NEAR(costs.at("effect lens").bias->value, 0.1, 1e-3);
   EXPECT_NEAR(costs.at("path depth 2").bias->value, 1.0 / 16, 1e-3);
   EXPECT_NEAR(costs.at("path depth 3").bias->value, 1.0 / 64, 1e-3);

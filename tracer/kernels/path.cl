@@ -404,7 +404,11 @@ DS_FN void add_samples(Sums* sums, mask done, natural number, real3 radiance) {
   const real sample[3] = {radiance.x, radiance.y, radiance.z};
   for (int c = 0; c < 3; ++c) {
     const real x = choose(good, sample[c], (real)(0.0f));
+#ifdef DS_PLAIN_SUMS  // only to tell what compensating costs
+    sums->plane[k_film_sum + c] = sums->plane[k_film_sum + c] + x;
+#else
     add_compensated(&sums->plane[k_film_sum + c], &sums->plane[k_film_compensation + c], x);
+#endif
     sums->plane[k_film_halves + c] = sums->plane[k_film_halves + c] + choose(even, x, -x);
   }
 }

@@ -105,6 +105,7 @@ struct TracerOptions {
   bool full_program = false;  ///< compile every effect in, used or not
   bool high_quality_bvh = false;
   bool count_rays = false;   ///< see Tracer::ray_counts; costs a few percent
+  bool plain_sums = false;   ///< samples are added in plain floats, to tell what compensating costs
   std::string cache_folder;  ///< compiled programs; "" = the user's cache folder
 };
 

@@ -77,7 +77,8 @@ struct Tracer::State {
               : device.info().is_cpu ? 16
                                      : 1),
         programs(device,
-                 fmt::format("-DDS_LANES={}{}", lanes, o.count_rays ? " -DDS_COUNT_RAYS" : ""),
+                 fmt::format("-DDS_LANES={}{}{}", lanes, o.count_rays ? " -DDS_COUNT_RAYS" : "",
+                             o.plain_sums ? " -DDS_PLAIN_SUMS" : ""),
                  o.cache_folder) {
     // A CPU's threads take groups as they get done: small ones share a launch out evenly. A GPU
     // runs a group's items side by side.
