@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """What `dsbuild build` makes and what it leaves alone."""
+import contextlib
 import json
 import os
 import pty
 import re
 import shutil
 import signal
+import sqlite3
 import subprocess
 import time
 
@@ -169,13 +171,25 @@ class BuildTest(TinyCase):
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         self.assertEqual(run.stdout.count(": OK"), 2 * IMAGES + 2)
 
+    def begun_builds(self):
+        """How many the dataset's database knows of."""
+        file = self.out / ".dsbuild/dsbuild.sqlite"
+        if not file.exists():
+            return 0
+        try:
+            with contextlib.closing(sqlite3.connect(f"file:{file}?mode=ro", uri=True)) as database:
+                return database.execute("SELECT count(*) FROM build").fetchone()[0]
+        except sqlite3.OperationalError:  # it is being created
+            return 0
+
     def test_interrupt_ends_cleanly(self):
         # Large enough that the signal finds the first image under way.
         slow = ["--set", "engine.spp=4000", "--set", "engine.width=128", "--set", "engine.height=128"]
-        for number in (signal.SIGINT, signal.SIGTERM):
+        for begun, number in enumerate((signal.SIGINT, signal.SIGTERM), start=1):
             process = self.start("build", self.recipe, "-o", self.out, "--json", *slow)
-            while not (self.out / ".dsbuild/dsbuild.sqlite").exists():
-                time.sleep(0.01)
+            while self.begun_builds() < begun:
+                self.assertIsNone(process.poll(), "it ended by itself")
+                time.sleep(0.05)
             time.sleep(1.0)
             process.send_signal(number)
             out, err = process.communicate(timeout=60)
