@@ -4,6 +4,7 @@ import json
 import os
 import select
 import shutil
+import signal
 import subprocess
 import tempfile
 import time
@@ -37,8 +38,8 @@ class Browser:
             [executable, "--headless", "--no-sandbox", "--disable-gpu", "--disable-extensions",
              "--disable-background-networking", "--no-first-run", "--remote-debugging-pipe",
              f"--user-data-dir={self._profile.name}", "about:blank"],
-            preexec_fn=take_pipes, close_fds=False, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL, env=dict(os.environ, HOME=self._profile.name))
+            preexec_fn=take_pipes, close_fds=False, start_new_session=True, stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=dict(os.environ, HOME=self._profile.name))
         os.close(to_browser)
         os.close(from_browser)
         self._buffer = b""
@@ -53,8 +54,19 @@ class Browser:
         os.close(self._out)
         self._process.terminate()
         self._process.wait(30)
+        try:
+            os.killpg(self._process.pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
         os.close(self._in)
-        self._profile.cleanup()
+        # Its helpers may write into the folder until they are gone.
+        for attempt in range(50):
+            try:
+                return self._profile.cleanup()
+            except OSError:
+                if attempt == 49:
+                    raise
+                time.sleep(0.1)
 
     def _read(self, deadline):
         while b"\0" not in self._buffer:
