@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <optional>
 #include <tuple>
 
 namespace ds {
@@ -21,12 +22,12 @@ namespace {
 
 class RealSceneTracer : public SceneTracer {
  public:
-  explicit RealSceneTracer(const TracerOptions& options)
-      : tracer_(options), plain_tracer_(with_plain_sums(options)) {}
+  explicit RealSceneTracer(const TracerOptions& options) : options_(options), tracer_(options) {}
 
   void set_scene(const Scene& scene) override {
     tracer_.set_scene(scene);
-    plain_tracer_.set_scene(scene);
+    scene_ = &scene;
+    plain_tracer_.reset();
   }
   Film trace(const Camera& camera, const EngineSettings& engine,
              const std::atomic<bool>& stop) override {
@@ -34,7 +35,13 @@ class RealSceneTracer : public SceneTracer {
   }
   Film trace_plain(const Camera& camera, const EngineSettings& engine,
                    const std::atomic<bool>& stop) override {
-    return plain_tracer_.trace(camera, engine, {}, &stop);
+    DS_ASSERT(scene_ != nullptr);
+    if (!plain_tracer_) {
+      TracerOptions options = options_;
+      options.plain_sums = true;
+      plain_tracer_.emplace(options).set_scene(*scene_);
+    }
+    return plain_tracer_->trace(camera, engine, {}, &stop);
   }
   void trace_on(const Camera& camera, const EngineSettings& engine, FilmSums& sums,
                 const std::atomic<bool>& stop) override {
@@ -53,12 +60,10 @@ class RealSceneTracer : public SceneTracer {
   }
 
  private:
-  static TracerOptions with_plain_sums(TracerOptions options) {
-    options.plain_sums = true;
-    return options;
-  }
-
-  Tracer tracer_, plain_tracer_;
+  TracerOptions options_;
+  Tracer tracer_;
+  const Scene* scene_ = nullptr;
+  std::optional<Tracer> plain_tracer_;  ///< made where it is asked for
   bool is_cpu_ = tracer_.runs_on_cpu();
 };
 

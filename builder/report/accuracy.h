@@ -25,6 +25,7 @@ namespace ds {
 class SceneTracer {
  public:
   virtual ~SceneTracer() = default;
+  /// The scene must outlive its tracing.
   virtual void set_scene(const Scene& scene) = 0;
   virtual Film trace(const Camera& camera, const EngineSettings& engine,
                      const std::atomic<bool>& stop) = 0;

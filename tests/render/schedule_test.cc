@@ -36,6 +36,13 @@ Picture ball() {
   return p;
 }
 
+Film converged_ball() {
+  Picture truth = ball();
+  truth.engine.spp = 8192;
+  truth.engine.seed = 1;
+  return pictures::trace(truth);
+}
+
 /// Errors that the ball needs more for than the first step gives, and more again.
 constexpr double k_coarse = 0.005, k_fine = 0.003;
 
@@ -129,10 +136,7 @@ TEST(Schedule, ATileThatLooksExactAmongNoisyOnesIsNotLeft) {
 
 TEST(Schedule, ThePictureIsAsExactAsWanted) {
   const Picture picture = ball();
-  Picture truth = picture;
-  truth.engine.spp = 8192;
-  truth.engine.seed = 1;
-  const Film converged = pictures::trace(truth);
+  const Film converged = converged_ball();
   Picture wanted = with_target(picture, k_fine);
   Tracer tracer(pictures::tracer_options());
   tracer.set_scene(wanted.scene);
@@ -159,10 +163,7 @@ TEST(Schedule, ThePictureIsAsExactAsWanted) {
 
 TEST(Schedule, TakesFewerSamplesThanTheSameNumberForEveryPixel) {
   const Picture picture = ball();
-  Picture truth = picture;
-  truth.engine.spp = 8192;
-  truth.engine.seed = 1;
-  const Film converged = pictures::trace(truth);
+  const Film converged = converged_ball();
   const Film adaptive = pictures::trace(with_target(picture, k_fine));
   Picture uniform = picture;
   // As many samples, rounded up, for each pixel: the error is larger.
@@ -197,10 +198,7 @@ TEST(Schedule, OfARegionOnlyItsErrorCounts) {
   EXPECT_LE(*film.facts.developed_high, k_fine);
   EXPECT_EQ(film.facts.least_spp, Schedule::k_first_spp);
   EXPECT_GT(film.facts.most_spp, Schedule::k_first_spp);
-  Picture truth = ball();
-  truth.engine.spp = 8192;
-  truth.engine.seed = 1;
-  const Film converged = pictures::trace(truth);
+  const Film converged = converged_ball();
   Film ball_seen, ball_converged;
   for (std::size_t i = 0; i < mask.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c) {
