@@ -181,7 +181,7 @@ constexpr std::array k_keys = {
     KeySpec{"engine.roulette_cap", number, "", "0.5", between(0.001, 1), "", "",
             "Least probability that a path survives it"},
     KeySpec{"engine.filter_width", number, "pixel", "3", between(0, 16), "", "",
-            "Full width of the Blackman-Harris pixel filter; 0 is a box of one pixel"},
+            "Full width of the Blackman-Harris pixel filter; up to 1 it is a box of one pixel"},
     KeySpec{"engine.math", choice, "", "\"strict\"", k_any, R"("strict" | "fast")", "",
             "\"strict\": the same bits on every device; \"fast\": for previews"},
     KeySpec{

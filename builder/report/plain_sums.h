@@ -18,6 +18,7 @@ class PlainSums {
   double relative_error() const;
 
  private:
+  std::size_t pixels_ = 0;
   std::vector<double> totals_;  ///< planes of r, g, b: the film's own sums
   std::vector<float> plain_;
 };

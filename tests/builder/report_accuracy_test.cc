@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace ds {
@@ -48,11 +49,12 @@ class KnownTracer : public SceneTracer {
     if (sums.empty()) sums = empty_film(engine.width, engine.height);
     for (std::uint32_t& spp : sums.tile_spp)
       spp = static_cast<std::uint32_t>(engine.spp);
-    for (std::size_t i = 0; i < 3 * sums.pixels(); ++i) {
-      sums.planes[kernels::k_film_sum * sums.pixels() + i] = 0x1p24f;
-      sums.planes[kernels::k_film_compensation * sums.pixels() + i] =
-          static_cast<float>(engine.spp - 1);
-    }
+    for (std::size_t tile = 0; tile < sums.tile_spp.size(); ++tile)
+      for (std::size_t c = 0; c < 3; ++c) {
+        std::ranges::fill(sums.row(tile, kernels::k_film_sum + c), 0x1p24f);
+        std::ranges::fill(sums.row(tile, kernels::k_film_compensation + c),
+                          static_cast<float>(engine.spp - 1));
+      }
   }
   Geometry trace_geometry(const Camera&, int width, int height) override {
     clock_ += 1e-6 * width * height;

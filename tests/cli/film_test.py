@@ -66,7 +66,7 @@ class FilmTest(TinyCase):
         self.build(*KEEP, *setting("spp", 4))
         damaged = 0
         for path in (self.out / ".dsbuild/objects").rglob("*"):
-            if path.is_file() and path.read_bytes().startswith(b"dsbuild film 1\n"):
+            if path.is_file() and path.read_bytes().startswith(b"dsbuild film 2\n"):
                 data = bytearray(path.read_bytes())
                 data[-40] ^= 1
                 path.chmod(0o644)
@@ -89,8 +89,8 @@ class FilmTest(TinyCase):
             self.assertLessEqual(16, film["least_spp"])
             self.assertLessEqual(film["least_spp"], film["most_spp"])
         self.assert_counts(self.build(*KEEP), built=0, traced_samples=0)
-        second = self.build(*KEEP, *setting("error", 0.02))
-        whole, pictures = self.fresh(*setting("error", 0.02))
+        second = self.build(*KEEP, *setting("error", 0.005))
+        whole, pictures = self.fresh(*setting("error", 0.005))
         self.assertEqual(first["traced_samples"] + second["traced_samples"], whole["traced_samples"])
         self.assertGreater(second["traced_samples"], 0)
         self.assertEqual(self.pictures(), pictures)

@@ -111,8 +111,8 @@ Three ask(const SkyQuestion& q) {
   const Sampler sampler =
       sampler_for(view.seed_low, view.seed_high, q.y * view.width + q.x, q.sample);
   const real2 f = sample_pair(sampler, 0u);
-  const real x = to_real(q.x) + 0.5f + filter_offset(q.filter->data(), f.x);
-  const real y = to_real(q.y) + 0.5f + filter_offset(q.filter->data(), f.y);
+  const real x = to_real(q.x) + 0.5f + (f.x - 0.5f);
+  const real y = to_real(q.y) + 0.5f + (f.y - 0.5f);
   const CameraRay ray = camera_ray(&view, x, y, of(0, 0));
   const LightTables t = {q.lights->data(), q.tables->data(), nullptr};
   real pdf = 0;
@@ -121,11 +121,9 @@ Three ask(const SkyQuestion& q) {
 
 CameraAnswer ask(const CameraQuestion& q) {
   const ViewData view = view_of(q.view);
-  const real x = filter_offset(q.filter->data(), real{q.filter_numbers[0]});
-  const real y = filter_offset(q.filter->data(), real{q.filter_numbers[1]});
-  const CameraRay ray = camera_ray(&view, real{q.pixel[0]} + x, real{q.pixel[1]} + y,
+  const CameraRay ray = camera_ray(&view, real{q.place[0]}, real{q.place[1]},
                                    of(q.lens_numbers[0], q.lens_numbers[1]));
-  return {{double{x}, double{y}}, three(ray.origin), three(ray.direction)};
+  return {three(ray.origin), three(ray.direction)};
 }
 
 SurfaceAnswer ask(const SurfaceQuestion& q) {

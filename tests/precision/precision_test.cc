@@ -9,6 +9,7 @@
 #include "tests/render/pictures.h"
 #include "tests/tracer/accel/rays.h"
 #include "tracer/device/scene_pack.h"
+#include "tracer/render/pixel_filter.h"
 #include "tracer/render/view.h"
 #include "tracer/scene/type_tables.h"
 
@@ -157,15 +158,14 @@ TEST(Precision, Bsdf) {
 class Packed {
  public:
   explicit Packed(const Scene& scene) {
-    const PackedScene packed = pack_scene(scene, features_of(scene, Camera{}), 3, BvhQuality::low);
+    const PackedScene packed = pack_scene(scene, features_of(scene, Camera{}), BvhQuality::low);
     for (const auto& [from, to] : {std::pair{&packed.lights, &lights},
                                    {&packed.tables, &tables},
                                    {&packed.triangles, &triangles}})
       for (const std::uint32_t word : from->words())
         to->push_back(std::bit_cast<float>(word));
-    filter.assign(tables.begin() + packed.data.filter_table, tables.end());
   }
-  std::vector<float> lights, tables, triangles, filter;
+  std::vector<float> lights, tables, triangles;
 };
 
 Scene triangle_scene() {
@@ -273,10 +273,29 @@ TEST(Precision, Lights) {
   EXPECT_LT(borders, asked / 200);
 }
 
-TEST(Precision, FilterAndCamera) {
-  Stage offset("filter: offset in the pixel"), origin("camera: origin on the lens"),
-      direction("camera: direction");
-  const Packed packed(triangle_scene());
+/// What the window has over each half pixel, by integrals in closed form with libm's sine.
+TEST(Precision, Filter) {
+  Stage weights("filter: weights of half pixels");
+  for (int k = 0; k <= 100; ++k) {
+    const double width = 1.25 + 14.75 * k / 100;
+    const PixelFilter filter(static_cast<float>(width));
+    const auto until = [&](std::size_t half) {
+      const double from_centre = double(half) / 2 - double(filter.reach()) - 0.5;
+      const double x = std::clamp(from_centre / width + 0.5, 0.0, 1.0) * 2 * M_PI;
+      return (0.35875 * x - 0.48829 * std::sin(x) + 0.14128 / 2 * std::sin(2 * x) -
+              0.01168 / 3 * std::sin(3 * x)) /
+             (0.35875 * 2 * M_PI);
+    };
+    for (std::size_t i = 0; i < filter.weights().size(); ++i)
+      weights.add(std::fabs(filter.weights()[i] - (until(i + 1) - until(i))), 1,
+                  fmt::format("width {:g}", width));
+  }
+  // Two sines of an error of 2e-7 each, which is 3.4 half-ulps, times 0.22, and two of less.
+  weights.expect_within(2);
+}
+
+TEST(Precision, Camera) {
+  Stage origin("camera: origin on the lens"), direction("camera: direction");
   Numbers numbers(3);
   for (const int size : {1, 17, 512, 16384})
     for (const double fov : {0.01, 49.0, 179.0}) {
@@ -291,17 +310,12 @@ TEST(Precision, FilterAndCamera) {
       for (int i = 0; i < 2000; ++i) {
         CameraQuestion q;
         std::memcpy(q.view.data(), &view, sizeof(view));
-        q.filter = &packed.filter;
-        for (float& x : q.pixel)
-          x = static_cast<float>(numbers.bits() % static_cast<unsigned>(size)) + 0.5f;
-        for (float& n : q.filter_numbers)
-          n = numbers.next();
+        for (float& x : q.place)
+          x = static_cast<float>(numbers.bits() % static_cast<unsigned>(size)) + numbers.next();
         for (float& n : q.lens_numbers)
           n = numbers.next();
         const CameraAnswer f = in_float::ask(q), d = in_double::ask(q);
         const std::string where = fmt::format("{} pixels, {} degrees", size, fov);
-        for (std::size_t k = 0; k < 2; ++k)
-          offset.add(std::fabs(f.offset[k] - d.offset[k]), 1, where);
         origin.add(distance(f.origin, d.origin), 2.6, where);
         // A pixel's place is a float of up to `size`, its half-ulp 2^-24 of the whole picture,
         // which spans 2 tan(fov / 2) of the direction before that is made a unit vector.
@@ -309,7 +323,6 @@ TEST(Precision, FilterAndCamera) {
                       where);
       }
     }
-  offset.expect_within(2);
   origin.expect_within(2);
   direction.expect_within(4);
 }
@@ -450,13 +463,13 @@ TEST(Precision, Sum) {
   p.camera.fov_deg = 100;
   p.engine.width = p.engine.height = 12;
   p.engine.spp = 4096;
+  p.engine.filter_width = 0;
   p.engine.seed = 0x0123456789abcdefu;
   const Film film = pictures::trace(p);
   const Packed packed(p.scene);
   const kernels::ViewData view = view_data(p.camera, p.engine);
   SkyQuestion q;
   std::memcpy(q.view.data(), &view, sizeof(view));
-  q.filter = &packed.filter;
   q.lights = &packed.lights;
   q.tables = &packed.tables;
   for (q.y = 0; q.y < 12; ++q.y)

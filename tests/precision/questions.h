@@ -47,19 +47,16 @@ struct LightAnswer {
 
 struct CameraQuestion {
   std::array<float, 31> view{};  ///< the words of ViewData
-  const std::vector<float>* filter = nullptr;
-  std::array<float, 2> pixel{};  ///< its centre
-  std::array<float, 2> filter_numbers{}, lens_numbers{};
+  std::array<float, 2> place{};  ///< in pixels
+  std::array<float, 2> lens_numbers{};
 };
 struct CameraAnswer {
-  std::array<double, 2> offset{};  ///< pixels
   Three origin{}, direction{};
 };
 
 /// A sample of a pixel that looks straight at an image sky.
 struct SkyQuestion {
   std::array<float, 31> view{};  ///< the words of ViewData
-  const std::vector<float>* filter = nullptr;
   const std::vector<float>* lights = nullptr;
   const std::vector<float>* tables = nullptr;
   unsigned x = 0, y = 0, sample = 0;

@@ -4,6 +4,7 @@
 #include "tracer/device/opencl.h"
 #include "tracer/device/program_text.h"
 #include "tracer/render/film.h"
+#include "tracer/render/pixel_filter.h"
 #include "tracer/render/view.h"
 
 #include <fmt/format.h>
@@ -30,13 +31,13 @@ __kernel void add_given(const __global float* restrict samples, const __global u
   const Pixels pixels =
       pixels_of(first / (uint)k_tile_pixels, first % (uint)k_tile_pixels, &view);
   Sums sums;
-  load_sums(&sums, film, &pixels, &view);
+  load_sums(&sums, film, first / (uint)k_tile_pixels, first % (uint)k_tile_pixels, &view);
   for (uint i = 0u; i < words[0]; ++i) {
     const real3 radiance =
         vec((real)(samples[3u * i]), (real)(samples[3u * i + 1u]), (real)(samples[3u * i + 2u]));
-    add_samples(&sums, pixels.inside, (natural)(i), radiance);
+    add_samples(&sums, pixels.inside, (natural)(i), (natural)(2u), radiance);
   }
-  store_sums(&sums, &pixels);
+  store_sums(&sums);
 }
 )cl";
 
@@ -67,7 +68,7 @@ Film film_of_samples(const std::vector<Vec3>& samples, MathMode math, int lanes,
   device.run(kernel, 0, static_cast<std::size_t>(64 / lanes), 1);
   device.read(film, std::as_writable_bytes(std::span(sums.planes)));
   std::fill(sums.tile_spp.begin(), sums.tile_spp.end(), static_cast<std::uint32_t>(samples.size()));
-  return film_of(sums);
+  return film_of(sums, PixelFilter(0));
 }
 
 class FilmCounts : public testing::TestWithParam<std::tuple<MathMode, int>> {
@@ -151,6 +152,7 @@ TEST(Outliers, RemovedEnergyIsWhatTheMeanLost) {
                0.0722 * double{film.rgb[i + 2]};
       return sum;
     };
+    picture.engine.filter_width = 0;  // every sample counts the same for the mean
     const double all = mean(pictures::trace(picture));
     picture.engine.outlier_limit = 3;
     const Film film = pictures::trace(picture);

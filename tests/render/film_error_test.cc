@@ -4,6 +4,7 @@
 #include "tests/render/pictures.h"
 #include "tracer/kernels/layout.h"
 #include "tracer/render/film.h"
+#include "tracer/render/pixel_filter.h"
 
 #include <gtest/gtest.h>
 
@@ -19,11 +20,14 @@ namespace {
 Film one_pixel(float sum, float halves, std::uint32_t spp) {
   FilmSums sums = empty_film(1, 1);
   sums.tile_spp[0] = spp;
+  // Even and odd samples by turns in one quarter, or as good as: the others have none.
   for (std::size_t c = 0; c < 3; ++c) {
-    sums.planes[kernels::k_film_sum + c] = sum;
-    sums.planes[kernels::k_film_halves + c] = halves;
+    sums.row(0, kernels::k_film_sum + c)[0] = sum;
+    sums.row(0, kernels::k_film_halves + c)[0] = halves;
   }
-  return film_of(sums);
+  sums.row(0, kernels::k_film_count)[0] = static_cast<float>(spp);
+  sums.row(0, kernels::k_film_count_halves)[0] = static_cast<float>(spp % 2);
+  return film_of(sums, PixelFilter(3));
 }
 
 TEST(FilmErrorTest, closed_forms) {

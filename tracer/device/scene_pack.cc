@@ -133,14 +133,12 @@ std::vector<std::uint32_t> first_triangles(const Scene& scene) {
   return first;
 }
 
-PackedScene pack_scene(const Scene& scene, const Features& features, float filter_width,
-                       BvhQuality quality) {
+PackedScene pack_scene(const Scene& scene, const Features& features, BvhQuality quality) {
   const std::vector<Corners> corners = all_corners(scene);
   if (corners.empty()) fail(ErrorKind::asset, "the scene has no triangle");
   PackedScene packed;
   packed.bvh = build_bvh(corners, quality);
   const std::vector<std::uint32_t> texels = pack_texels(scene, packed.tables);
-  packed.data.filter_table = pack_filter(filter_width, packed.tables);
   pack_materials(scene, features, texels, packed);
   std::vector<std::uint32_t> mesh_lights;
   pack_lights(scene, features, packed, mesh_lights);

@@ -41,8 +41,7 @@ struct PackedScene {
 /// Images must be loaded. `features` gives the numbers of materials, textures and lights: the
 /// scene's own, or all_features(). Throws Error(asset) for a scene without triangles or with what
 /// the tracer cannot hold.
-PackedScene pack_scene(const Scene& scene, const Features& features, float filter_width,
-                       BvhQuality quality);
+PackedScene pack_scene(const Scene& scene, const Features& features, BvhQuality quality);
 
 /// A triangle's row number where objects stand one behind the other: index of the object's first
 /// triangle.
@@ -52,9 +51,5 @@ std::vector<std::uint32_t> first_triangles(const Scene& scene);
 /// `mesh_lights[o]` becomes the row of the light that object o is, or k_none.
 void pack_lights(const Scene& scene, const Features& features, PackedScene& packed,
                  std::vector<std::uint32_t>& mesh_lights);
-
-/// Appends the inverse cumulative distribution of the pixel filter, offsets in pixels:
-/// Blackman-Harris of this full width; 0: a box of one pixel. Returns its offset.
-std::uint32_t pack_filter(float filter_width, Words& tables);
 
 }  // namespace ds

@@ -24,16 +24,6 @@ DS_FN real3 camera_position(const ViewData* view) {
   return vec((real)(view->position[0]), (real)(view->position[1]), (real)(view->position[2]));
 }
 
-/// Offset from the pixel's centre, distributed as the pixel filter: the filter's inverse cumulative
-/// at u, so that every sample has weight 1 and touches one pixel only (Ernst, Stamminger and
-/// Greiner 2006, "Filter Importance Sampling").
-DS_FN real filter_offset(DS_GLOBAL float* table, real u) {
-  const real x = u * (float)k_filter_size;
-  const natural i = to_natural(x);
-  const real low = load(table, i);
-  return fma(load(table, i + 1u) - low, x - to_real(i), low);
-}
-
 #ifdef DS_LENS
 DS_FN CameraRay camera_ray(const ViewData* view, real x, real y, real2 lens) {
   const real2 d = concentric_disc(lens);

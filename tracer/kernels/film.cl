@@ -27,49 +27,34 @@ DS_FN Pixels pixels_of(uint tile, uint first, const ViewData* view) {
 
 /// The pixels' running sums while this work-item works on them. The rare planes (from k_film_nan
 /// on) stay in the film.
-enum { k_sums = k_film_halves + 3 };
+enum { k_sums = k_film_nan };
 typedef struct {
   real plane[k_sums];
-  __global float* film;
-  natural index;  ///< of the pixels
-  uint stride;    ///< from plane to plane in the film
-  float limit;    ///< ViewData::sample_limit
+  __global float* film;  ///< plane 0 of lane 0's pixel
+  float limit;           ///< ViewData::sample_limit
 } Sums;
 
-DS_FN void load_sums(Sums* sums, __global float* film, const Pixels* pixels, const ViewData* view) {
-  sums->film = film;
-  sums->index = pixels->index;
-  sums->stride = view->width * view->height;
+DS_FN void load_sums(Sums* sums, __global float* film, uint tile, uint first,
+                     const ViewData* view) {
+  sums->film = film + (size_t)tile * (uint)(k_film_planes * k_tile_pixels) + first;
   sums->limit = view->sample_limit;
   for (int i = 0; i < k_sums; ++i)
-    sums->plane[i] = load(film + i * sums->stride, pixels->index);
+    sums->plane[i] = *(const __global real*)(sums->film + i * k_tile_pixels);
 }
 
-DS_FN void store_sums(const Sums* sums, const Pixels* pixels) {
-  float value[k_sums][DS_LANES] __attribute__((aligned(64)));
-  uint index[DS_LANES] __attribute__((aligned(64)));
-  int inside[DS_LANES] __attribute__((aligned(64)));
+DS_FN void store_sums(const Sums* sums) {
   for (int i = 0; i < k_sums; ++i)
-    *(real*)value[i] = sums->plane[i];
-  *(natural*)index = pixels->index;
-  *(mask*)inside = pixels->inside;
-  for (int lane = 0; lane < DS_LANES; ++lane) {
-    if (!inside[lane]) continue;
-    for (int i = 0; i < k_sums; ++i)
-      sums->film[i * sums->stride + index[lane]] = value[i][lane];
-  }
+    *(__global real*)(sums->film + i * k_tile_pixels) = sums->plane[i];
 }
 
 /// Counts the samples of `odd` by what is wrong with them and scales outliers down; returns the
 /// lanes of these, which are good now. By bits, since fast math takes NaN for impossible.
 DS_FN mask tame_samples(const Sums* sums, real3* radiance, mask odd) {
   float sample[3][DS_LANES] __attribute__((aligned(64)));
-  uint index[DS_LANES] __attribute__((aligned(64)));
   int wanted[DS_LANES] __attribute__((aligned(64)));
   *(real*)sample[0] = radiance->x;
   *(real*)sample[1] = radiance->y;
   *(real*)sample[2] = radiance->z;
-  *(natural*)index = sums->index;
   *(mask*)wanted = odd;
   for (int lane = 0; lane < DS_LANES; ++lane) {
     if (!wanted[lane]) continue;
@@ -84,13 +69,13 @@ DS_FN mask tame_samples(const Sums* sums, real3* radiance, mask odd) {
                       : greatest > as_uint(k_sample_most) ? k_film_infinite
                       : negative                          ? k_film_negative
                                                           : k_film_outliers;
-    sums->film[kind * sums->stride + index[lane]] += 1.0f;
+    sums->film[kind * (uint)k_tile_pixels + (uint)lane] += 1.0f;
     wanted[lane] = kind == k_film_outliers ? -1 : 0;
     if (kind != k_film_outliers) continue;
     const float factor = sums->limit / as_float(greatest);
     const float energy =
         0.2126f * sample[0][lane] + 0.7152f * sample[1][lane] + 0.0722f * sample[2][lane];
-    sums->film[k_film_removed * sums->stride + index[lane]] += energy * (1.0f - factor);
+    sums->film[k_film_removed * k_tile_pixels + lane] += energy * (1.0f - factor);
     for (int c = 0; c < 3; ++c)
       sample[c][lane] *= factor;
   }
@@ -105,8 +90,8 @@ DS_FN mask is_within(real x, float limit) {
   return (bits <= as_uint(limit)) | (bits == 0x80000000u);
 }
 
-/// Adds the finished samples in `done`, by number.
-DS_FN void add_samples(Sums* sums, mask done, natural number, real3 radiance) {
+/// Adds the finished samples in `done`, by number, to the quarters of the pixels they are in.
+DS_FN void add_samples(Sums* sums, mask done, natural number, natural quarter, real3 radiance) {
   const mask in_range = is_within(radiance.x, sums->limit) & is_within(radiance.y, sums->limit) &
                         is_within(radiance.z, sums->limit);
   mask good = done & in_range;
@@ -114,13 +99,21 @@ DS_FN void add_samples(Sums* sums, mask done, natural number, real3 radiance) {
   if (any_lane(odd)) good = good | tame_samples(sums, &radiance, odd);
   const mask even = (number & 1u) == 0u;
   const real sample[3] = {radiance.x, radiance.y, radiance.z};
-  for (int c = 0; c < 3; ++c) {
-    const real x = choose(good, sample[c], (real)(0.0f));
+  for (uint q = 0; q < 4u; ++q) {
+    const mask here = done & (quarter == q);
+    if (!any_lane(here)) continue;
+    real* plane = sums->plane + q * (uint)k_film_quarter;
+    for (int c = 0; c < 3; ++c) {
+      const real x = choose(good & here, sample[c], (real)(0.0f));
 #ifdef DS_PLAIN_SUMS  // only to tell what compensating costs
-    sums->plane[k_film_sum + c] = sums->plane[k_film_sum + c] + x;
+      plane[k_film_sum + c] = plane[k_film_sum + c] + x;
 #else
-    add_compensated(&sums->plane[k_film_sum + c], &sums->plane[k_film_compensation + c], x);
+      add_compensated(&plane[k_film_sum + c], &plane[k_film_compensation + c], x);
 #endif
-    sums->plane[k_film_halves + c] = sums->plane[k_film_halves + c] + choose(even, x, -x);
+      plane[k_film_halves + c] = plane[k_film_halves + c] + choose(even, x, -x);
+    }
+    const real one = choose(here, (real)(1.0f), (real)(0.0f));
+    plane[k_film_count] = plane[k_film_count] + one;
+    plane[k_film_count_halves] = plane[k_film_count_halves] + choose(even, one, -one);
   }
 }

@@ -10,7 +10,7 @@
 #include "tracer/kernels/shade.h"
 
 /// Pairs of dimensions a sample uses: two for the camera, then k_pairs_vertex at each path vertex.
-enum { k_pair_filter, k_pair_lens, k_pairs_camera };
+enum { k_pair_pixel, k_pair_lens, k_pairs_camera };
 enum { k_pair_choices, k_pair_light, k_pair_direction, k_pair_lobe, k_pairs_vertex };
 
 typedef struct {
@@ -22,13 +22,15 @@ typedef struct {
   natural vertices;  ///< surface points visited
   natural diffuse, glossy, specular;  ///< bounces of each sort
   natural sample;                     ///< number of the sample in flight
+  natural quarter;                    ///< of its pixel that it is in
   mask alive;
   // The last vertex' light is known once its shadow ray is traced, together with the next ray of
   // the path, or with the first of the next sample where the path ended.
   LaneRays shadow;
-  real3 direct;   ///< what the shadow ray's light adds where nothing stands between
-  real3 closing;  ///< radiance so far of the sample before the one in flight
-  mask closes;    ///< that sample still waits for its shadow ray
+  real3 direct;             ///< what the shadow ray's light adds where nothing stands between
+  real3 closing;            ///< radiance so far of the sample before the one in flight
+  natural closing_quarter;  ///< where that sample is in its pixel
+  mask closes;              ///< it still waits for its shadow ray
   DS_RAY_COUNTS_FIELD
 } Paths;
 
@@ -41,19 +43,19 @@ typedef struct {
 } SceneTables;
 
 /// Starts the next sample in the lanes of `start`.
-DS_FN void start_paths(Paths* paths, mask start, const Pixels* pixels, const SceneData* scene,
-                       const ViewData* view, const SceneTables* t) {
+DS_FN void start_paths(Paths* paths, mask start, const Pixels* pixels, const ViewData* view) {
   const Sampler sampler =
       sampler_for(view->seed_low, view->seed_high, pixels->index, paths->sample);
-  const real2 f = sample_pair(sampler, (natural)((uint)k_pair_filter));
-  DS_GLOBAL float* filter = t->lights.tables + scene->filter_table;
+  const real2 f = sample_pair(sampler, (natural)((uint)k_pair_pixel));
   real2 lens;
   lens.x = lens.y = (real)(0.0f);
 #ifdef DS_LENS
   lens = sample_pair(sampler, (natural)((uint)k_pair_lens));
 #endif
-  const CameraRay ray = camera_ray(view, pixels->x + filter_offset(filter, f.x),
-                                   pixels->y + filter_offset(filter, f.y), lens);
+  const CameraRay ray = camera_ray(view, pixels->x + (f.x - 0.5f), pixels->y + (f.y - 0.5f), lens);
+  const natural quarter = choose_natural(f.x < 0.5f, (natural)(0u), (natural)(1u)) +
+                          choose_natural(f.y < 0.5f, (natural)(0u), (natural)(2u));
+  paths->quarter = choose_natural(start, quarter, paths->quarter);
   const real zero = (real)(0.0f);
   const natural none = (natural)(0u);
   paths->origin = choose(start, ray.origin, paths->origin);
@@ -300,7 +302,8 @@ DS_FN void add_direct(Paths* paths, Sums* sums, const BatchHits* found) {
   const real3 light = choose(lit, paths->direct, splat((real)(0.0f)));
   paths->radiance = choose(paths->closes, paths->radiance, add(paths->radiance, light));
   if (any_lane(paths->closes))
-    add_samples(sums, paths->closes, paths->sample - 1u, add(paths->closing, light));
+    add_samples(sums, paths->closes, paths->sample - 1u, paths->closing_quarter,
+                add(paths->closing, light));
   paths->closes = (mask)(0);
   paths->shadow.wanted = (mask)(0);
 }
@@ -399,7 +402,7 @@ DS_OUT_OF_LINE void trace_pixels(uint tile, uint first, uint begin, uint end,
   const ViewData view = *view_data;
   const Pixels pixels = pixels_of(tile, first, &view);
   Sums sums;
-  load_sums(&sums, film, &pixels, &view);
+  load_sums(&sums, film, tile, first, &view);
   Paths paths;
   DS_CLEAR_RAY_COUNTS(paths);
   paths.alive = paths.closes = paths.shadow.wanted = (mask)(0);
@@ -407,20 +410,23 @@ DS_OUT_OF_LINE void trace_pixels(uint tile, uint first, uint begin, uint end,
   paths.shadow.t_max = (real)(0.0f);
   paths.direct = paths.closing = splat((real)(0.0f));
   paths.sample = (natural)(begin);
-  start_paths(&paths, pixels.inside, &pixels, &scene, &view, t);
+  paths.quarter = paths.closing_quarter = (natural)(0u);
+  start_paths(&paths, pixels.inside, &pixels, &view);
   while (any_lane(paths.alive | paths.closes)) {
     const StepEnds ends = advance(&paths, &sums, &pixels, &scene, &view, t);
     const mask over = ends.done | ends.closes;
     if (!any_lane(over)) continue;
-    if (any_lane(ends.done)) add_samples(&sums, ends.done, paths.sample, paths.radiance);
+    if (any_lane(ends.done))
+      add_samples(&sums, ends.done, paths.sample, paths.quarter, paths.radiance);
     paths.closing = choose(ends.closes, paths.radiance, paths.closing);
+    paths.closing_quarter = choose_natural(ends.closes, paths.quarter, paths.closing_quarter);
     paths.closes = ends.closes;
     paths.alive = paths.alive & !over;
     paths.sample += choose_natural(over, (natural)(1u), (natural)(0u));
     const mask start = over & (paths.sample < end);
-    if (any_lane(start)) start_paths(&paths, start, &pixels, &scene, &view, t);
+    if (any_lane(start)) start_paths(&paths, start, &pixels, &view);
   }
-  store_sums(&sums, &pixels);
+  store_sums(&sums);
   DS_STORE_RAY_COUNTS(paths);
 }
 

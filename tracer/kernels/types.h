@@ -14,8 +14,6 @@ typedef struct {
   uint
       light_rounds;  ///< candidates for a vertex' shadow ray: light_count, one of each light, whose
                      ///< selection probabilities are then 1 or 0; or 1, of a light chosen by these
-  uint filter_table;    ///< offset in tables: inverse cumulative pixel filter, k_filter_size + 1
-                        ///< values
   uint material_words;  ///< words a row of materials takes
 } SceneData;
 
@@ -38,12 +36,11 @@ typedef struct {
 } ViewData;
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(SceneData) == 6 * 4 && sizeof(ViewData) == 31 * 4, "no padding");
+static_assert(sizeof(SceneData) == 5 * 4 && sizeof(ViewData) == 31 * 4, "no padding");
 #endif
 
 enum {
-  k_most_rounds = 8,    ///< of SceneData::light_rounds
-  k_filter_size = 256,  ///< intervals of the inverse cumulative filter
+  k_most_rounds = 8,  ///< of SceneData::light_rounds
   k_bvh_width = 8,
   k_bvh_depth = 32,  ///< levels of nodes; the builder refuses a deeper tree
   k_bvh_stack = (k_bvh_width - 1) * k_bvh_depth + 1,
@@ -91,21 +88,29 @@ enum {
 /// What a program built with -DDS_COUNT_RAYS counts (ray_counts.h).
 enum { k_count_camera, k_count_extension, k_count_shadow, k_ray_counts };
 
-/// One pixel's running sums in film: planes of `width * height` floats, in this order.
-enum {
-  k_film_sum = 0,           ///< 3: r, g, b
-  k_film_compensation = 3,  ///< 3: what rounding has cut off (add_compensated of math.h)
-  k_film_halves = 6,        ///< 3: even samples minus odd ones: two independent halves
-  k_film_nan = 9,           ///< samples not added because a component was not a number, ...
-  k_film_infinite = 10,     ///< ... was infinite or above k_sample_most, ...
-  k_film_negative = 11,     ///< ... was negative; each sample has the first kind that fits
-  k_film_outliers = 12,     ///< samples scaled down to ViewData::sample_limit
-  k_film_removed = 13,      ///< luminance that this took from them
-  k_film_planes = 14,
-};
-
 /// Pixels that samples are added to together: squares of 4x4.
 enum { k_tile_side = 4, k_tile_pixels = 16 };
+
+/// A film is a row of tiles, a tile k_film_planes rows of one float for each of its pixels; those
+/// outside the picture stay zero. First come the sums of the four quarters of a pixel, the upper
+/// left one, the upper right one, the lower left one and the lower right one, each of them:
+enum {
+  k_film_sum = 0,            ///< 3: r, g, b
+  k_film_compensation = 3,   ///< 3: what rounding has cut off (add_compensated of math.h)
+  k_film_halves = 6,         ///< 3: even samples minus odd ones: two independent halves
+  k_film_count = 9,          ///< samples
+  k_film_count_halves = 10,  ///< even ones minus odd ones
+  k_film_quarter = 11,
+};
+/// Then what is seldom other than zero, of the whole pixel.
+enum {
+  k_film_nan = 4 * k_film_quarter,  ///< samples not added because a component was not a number, ...
+  k_film_infinite,                  ///< ... was infinite or above k_sample_most, ...
+  k_film_negative,                  ///< ... was negative; each sample has the first kind that fits
+  k_film_outliers,                  ///< samples scaled down to ViewData::sample_limit
+  k_film_removed,                   ///< luminance that this took from them
+  k_film_planes,
+};
 
 /// What a launch traces: for each tile its number, row by row, and the numbers of its
 /// pixels' first sample and the one behind the last. An entry with no samples does nothing.

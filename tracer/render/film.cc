@@ -4,40 +4,49 @@
 #include "tracer/base/error.h"
 #include "tracer/kernels/layout.h"
 #include "tracer/render/film_error.h"
+#include "tracer/render/pixel_filter.h"
 
 #include <algorithm>
 
 namespace ds {
 namespace {
 
-double total(std::span<const float> plane) {
+/// Of all pixels.
+double total(const FilmSums& sums, std::size_t plane) {
   double sum = 0;
-  for (const float value : plane)
-    sum += double{value};
+  for (std::size_t tile = 0; tile < sums.tile_spp.size(); ++tile)
+    for (const float value : sums.row(tile, plane))
+      sum += double{value};
   return sum;
 }
 
-std::uint64_t count(const FilmSums& sums, int plane) {
-  return static_cast<std::uint64_t>(total(sums.plane(plane)));
+std::uint64_t count(const FilmSums& sums, std::size_t plane) {
+  return static_cast<std::uint64_t>(total(sums, plane));
 }
 
 /// Luminance that scaling outliers down took, over what there would be with it.
 double removed_share(const FilmSums& sums) {
-  const double removed = total(sums.plane(kernels::k_film_removed));
+  const double removed = total(sums, kernels::k_film_removed);
   if (!(removed > 0)) return 0;
   constexpr double weights[3] = {k_luminance_r, k_luminance_g, k_luminance_b};
   double kept = 0;
-  for (int c = 0; c < 3; ++c)
-    kept += weights[c] * total(sums.plane(kernels::k_film_sum + c));
+  for (std::size_t q = 0; q < 4; ++q)
+    for (std::size_t c = 0; c < 3; ++c)
+      kept += weights[c] * total(sums, q * kernels::k_film_quarter + kernels::k_film_sum + c);
   return removed / (kept + removed);
 }
 
 }  // namespace
 
-std::size_t FilmSums::tile_pixels(std::size_t tile) const {
+PixelRect FilmSums::tile_rect(std::size_t tile) const {
   const std::size_t x = tile % tiles_x() * k_tile_size, y = tile / tiles_x() * k_tile_size;
-  return std::min<std::size_t>(k_tile_size, static_cast<std::size_t>(width) - x) *
-         std::min<std::size_t>(k_tile_size, static_cast<std::size_t>(height) - y);
+  return {x, y, std::min(x + k_tile_size, static_cast<std::size_t>(width)),
+          std::min(y + k_tile_size, static_cast<std::size_t>(height))};
+}
+
+std::size_t FilmSums::tile_pixels(std::size_t tile) const {
+  const PixelRect rect = tile_rect(tile);
+  return (rect.x1 - rect.x0) * (rect.y1 - rect.y0);
 }
 
 std::uint64_t FilmSums::samples() const {
@@ -47,20 +56,20 @@ std::uint64_t FilmSums::samples() const {
   return sum;
 }
 
-PixelEstimate pixel_of(const FilmSums& film, std::size_t pixel, std::uint32_t spp) {
-  PixelEstimate estimate;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const auto value = [&](int plane) {
-      return double{film.planes[(static_cast<std::size_t>(plane) + c) * film.pixels() + pixel]};
-    };
-    const double sum = value(kernels::k_film_sum) + value(kernels::k_film_compensation);
-    estimate.mean[c] = static_cast<float>(sum / spp);
-    if (spp < 2) continue;
-    // An odd count leaves the even half one sample longer: its surplus is taken out as one mean.
-    const double surplus = spp % 2 == 1 ? sum / spp : 0.0;
-    estimate.half[c] = static_cast<float>((value(kernels::k_film_halves) - surplus) / spp);
-  }
-  return estimate;
+std::size_t FilmSums::place(std::size_t x, std::size_t y) const {
+  const std::size_t tile = y / k_tile_size * tiles_x() + x / k_tile_size;
+  return tile * kernels::k_film_planes * kernels::k_tile_pixels + y % k_tile_size * k_tile_size +
+         x % k_tile_size;
+}
+
+std::span<const float> FilmSums::row(std::size_t tile, std::size_t plane) const {
+  return std::span(planes).subspan((tile * kernels::k_film_planes + plane) * kernels::k_tile_pixels,
+                                   kernels::k_tile_pixels);
+}
+
+std::span<float> FilmSums::row(std::size_t tile, std::size_t plane) {
+  return std::span(planes).subspan((tile * kernels::k_film_planes + plane) * kernels::k_tile_pixels,
+                                   kernels::k_tile_pixels);
 }
 
 FilmSums empty_film(int width, int height) {
@@ -68,26 +77,26 @@ FilmSums empty_film(int width, int height) {
   sums.width = width;
   sums.height = height;
   sums.tile_spp.assign(sums.tiles_x() * sums.tiles_y(), 0);
-  sums.planes.assign(sums.pixels() * kernels::k_film_planes, 0.0f);
+  sums.planes.assign(sums.tile_spp.size() * kernels::k_film_planes * kernels::k_tile_pixels, 0.0f);
   return sums;
 }
 
-Film film_of(const FilmSums& sums) {
+Film film_of(const FilmSums& sums, const PixelFilter& filter) {
   DS_ASSERT(!sums.empty());
   Film film;
   film.width = sums.width;
   film.height = sums.height;
-  film.rgb.resize(sums.pixels() * 3);
+  film.rgb.reserve(sums.pixels() * 3);
   const auto [least, most] = std::minmax_element(sums.tile_spp.begin(), sums.tile_spp.end());
   DS_ASSERT(*least > 0);
-  if (*least > 1) film.halves.resize(film.rgb.size());
-  for (std::size_t tile = 0; tile < sums.tile_spp.size(); ++tile)
-    sums.visit_tile(tile, [&](std::size_t pixel) {
-      const PixelEstimate estimate = pixel_of(sums, pixel, sums.tile_spp[tile]);
-      std::copy_n(estimate.mean.begin(), 3, film.rgb.data() + 3 * pixel);
-      if (!film.halves.empty())
-        std::copy_n(estimate.half.begin(), 3, film.halves.data() + 3 * pixel);
-    });
+  if (*least > 1) film.halves.reserve(sums.pixels() * 3);
+  const auto w = static_cast<std::size_t>(sums.width), h = static_cast<std::size_t>(sums.height);
+  constexpr std::size_t band = 16;  // rows at a time
+  for (std::size_t y = 0; y < h; y += band)
+    for (const PixelEstimate& pixel : filtered(sums, filter, {0, y, w, std::min(y + band, h)})) {
+      film.rgb.insert(film.rgb.end(), pixel.mean.begin(), pixel.mean.end());
+      if (*least > 1) film.halves.insert(film.halves.end(), pixel.half.begin(), pixel.half.end());
+    }
   FilmFacts& facts = film.facts;
   facts.samples = sums.samples();
   facts.least_spp = *least;
@@ -98,7 +107,7 @@ Film film_of(const FilmSums& sums) {
   facts.outlier_samples = count(sums, kernels::k_film_outliers);
   facts.removed_energy = removed_share(sums);
   film.rejected_samples = facts.nan_samples + facts.infinite_samples + facts.negative_samples;
-  if (const auto error = luminance_error(film)) {
+  if (const auto error = luminance_error(film, filter)) {
     film.relative_error = error->value;
     facts.error_low = error->low;
     facts.error_high = error->high;

@@ -28,11 +28,15 @@ struct ScheduleState {
   bool operator==(const ScheduleState&) const = default;
 };
 
-/// A film under way: what more samples can be added to. Pixel sums are planes of width * height
-/// floats in the order of kernels/types.h; row 0 is the top.
+struct PixelRect {
+  std::size_t x0, y0, x1, y1;  ///< x1 and y1 lie behind the last
+};
+
+/// A film under way: what more samples can be added to. `planes` has the layout of kernels/types.h.
+/// Tiles stand row by row, row 0 is the top.
 struct FilmSums {
   int width = 0, height = 0;
-  std::vector<std::uint32_t> tile_spp;  ///< samples each pixel of a tile has; tiles row by row
+  std::vector<std::uint32_t> tile_spp;  ///< samples each pixel of a tile has
   std::vector<float> planes;
   ScheduleState schedule;
 
@@ -42,20 +46,14 @@ struct FilmSums {
   std::size_t pixels() const {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   }
-  std::span<const float> plane(int number) const {
-    return std::span(planes).subspan(static_cast<std::size_t>(number) * pixels(), pixels());
-  }
+  /// Where plane 0 of a pixel stands in `planes`; the others follow, one every tile's pixels.
+  std::size_t place(std::size_t x, std::size_t y) const;
+  /// A tile's values of a plane, pixel by pixel.
+  std::span<const float> row(std::size_t tile, std::size_t plane) const;
+  std::span<float> row(std::size_t tile, std::size_t plane);
   /// Pixels of a tile that lie in the film.
+  PixelRect tile_rect(std::size_t tile) const;
   std::size_t tile_pixels(std::size_t tile) const;
-  /// Calls `visit` with the number (y * width + x) of each of them.
-  template <typename Visit>
-  void visit_tile(std::size_t tile, const Visit& visit) const {
-    const std::size_t x0 = tile % tiles_x() * k_tile_size, y0 = tile / tiles_x() * k_tile_size;
-    const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
-    for (std::size_t y = y0; y < std::min(y0 + k_tile_size, h); ++y)
-      for (std::size_t x = x0; x < std::min(x0 + k_tile_size, w); ++x)
-        visit(y * w + x);
-  }
   /// Camera samples taken so far.
   std::uint64_t samples() const;
 
@@ -67,14 +65,14 @@ struct FilmSums {
 /// Without samples, all zero.
 FilmSums empty_film(int width, int height);
 
-/// A pixel's mean, and half the difference between the means of its even and odd samples (zero for
-/// a single sample).
+/// A pixel's mean, and half the difference between the means of its even and odd samples (zero
+/// where it has none of either).
 struct PixelEstimate {
   std::array<float, 3> mean{}, half{};
 };
-PixelEstimate pixel_of(const FilmSums& film, std::size_t pixel, std::uint32_t spp);
 
-/// Means, counts and error estimates. Every tile has at least one sample.
-Film film_of(const FilmSums& sums);
+class PixelFilter;
+/// The picture, counts and error estimates. Every tile has at least one sample.
+Film film_of(const FilmSums& sums, const PixelFilter& filter);
 
 }  // namespace ds

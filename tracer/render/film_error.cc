@@ -17,9 +17,9 @@ double luminance(const float* rgb) {
 
 }  // namespace
 
-ErrorEstimate ErrorSum::estimate(double scale, double count) const {
+ErrorEstimate ErrorSum::estimate(double scale, double count, double correlation) const {
   if (!(sum_ > 0) || !(scale > 0)) return {};
-  const double n = std::max(1.0, 2 * sum_ * sum_ / sum_of_squares_);
+  const double n = std::max(1.0, 2 * sum_ * sum_ / sum_of_squares_ / correlation);
   // Student's 97.5 % quantile to first order in 1 / n, which keeps to F(n, n) from n = 5 on within
   // 5 % and is wider below.
   const double quantile = 1.96 + 2.37 / n;
@@ -28,7 +28,7 @@ ErrorEstimate ErrorSum::estimate(double scale, double count) const {
   return {value, value / factor, value * factor};
 }
 
-std::optional<ErrorEstimate> luminance_error(const Film& film) {
+std::optional<ErrorEstimate> luminance_error(const Film& film, const PixelFilter& filter) {
   if (film.halves.empty()) return std::nullopt;
   DS_ASSERT(film.halves.size() == film.rgb.size());
   const std::size_t pixels = film.rgb.size() / 3;
@@ -40,7 +40,7 @@ std::optional<ErrorEstimate> luminance_error(const Film& film) {
     sum.add(d * d);
   }
   const auto count = static_cast<double>(pixels);
-  return sum.estimate(mean / count, count);
+  return sum.estimate(mean / count, count, filter.correlation());
 }
 
 }  // namespace ds

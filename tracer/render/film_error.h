@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tracer/render/pixel_filter.h"
 #include "tracer/render/render.h"
 
 #include <optional>
@@ -27,10 +28,12 @@ struct ErrorEstimate {
 /// its estimate is about log-normal with a standard deviation of 2 / sqrt(n), n = (sum v)^2 / sum
 /// v^2 the number of pixels that carry the error. d is half the difference of two equal variables,
 /// so E(d^4) >= 2 v^2 whatever their distribution (3 v^2 for a normal one), and 2 (sum d^2)^2 / sum
-/// d^4 does not overstate n. What no sample has met, such as a caustic too small to be found,
-/// cannot be known here: the error is then above the interval. Tested in
-/// tests/render/film_error_test.cc: over 200 small renders it holds the true error of 90 to 99 %,
-/// and every miss but a few is of that kind.
+/// d^4 does not overstate n. Pixels that share samples err alike: the products a b of two whose
+/// noise has the correlation r have that of r^2, so n pixels tell as much as n over the sum of r^2
+/// over a pixel and all others (PixelFilter::correlation). What no sample has met, such as a
+/// caustic too small to be found, cannot be known here: the error is then above the interval.
+/// Tested in tests/render/film_error_test.cc: over 200 small renders it holds the true error of 90
+/// to 99 %, and every miss but a few is of that kind.
 class ErrorSum {
  public:
   /// `squared`: d^2 of a pixel, summed over its channels.
@@ -43,8 +46,9 @@ class ErrorSum {
     sum_of_squares_ += other.sum_of_squares_;
     return *this;
   }
-  /// `scale`: what the mean squared error's root is to be divided by; `count`: of values added up.
-  ErrorEstimate estimate(double scale, double count) const;
+  /// `scale`: what the mean squared error's root is to be divided by; `count`: of values added up;
+  /// `correlation`: PixelFilter::correlation.
+  ErrorEstimate estimate(double scale, double count, double correlation) const;
   double sum() const { return sum_; }
 
  private:
@@ -53,6 +57,6 @@ class ErrorSum {
 
 /// Of the linear picture's luminance, over its mean. 0 for a black film. Nothing for a film without
 /// halves: a single sample a pixel tells nothing of its error.
-std::optional<ErrorEstimate> luminance_error(const Film& film);
+std::optional<ErrorEstimate> luminance_error(const Film& film, const PixelFilter& filter);
 
 }  // namespace ds

@@ -18,7 +18,7 @@
 namespace ds {
 namespace {
 
-constexpr std::string_view k_magic = "dsbuild film 1\n";
+constexpr std::string_view k_magic = "dsbuild film 2\n";
 constexpr std::array<const char*, 5> k_names{"width", "height", "planes", "tone_scale",
                                              "least_bound"};
 constexpr int k_most_pixels_a_side = 16384;
@@ -37,12 +37,15 @@ void put_checksum(std::vector<std::byte>& to, Hash128 hash) {
 
 std::vector<int> planes_with_values(const FilmSums& film) {
   std::vector<int> planes;
-  for (int i = 0; i < kernels::k_film_planes; ++i) {
-    const std::span<const float> plane = film.plane(i);
-    if (std::any_of(plane.begin(), plane.end(),
-                    [](float v) { return std::bit_cast<std::uint32_t>(v) != 0; }))
+  for (int i = 0; i < kernels::k_film_planes; ++i)
+    for (std::size_t tile = 0; tile < film.tile_spp.size(); ++tile) {
+      const auto row = film.row(tile, static_cast<std::size_t>(i));
+      if (std::all_of(row.begin(), row.end(),
+                      [](float v) { return std::bit_cast<std::uint32_t>(v) == 0; }))
+        continue;
       planes.push_back(i);
-  }
+      break;
+    }
   return planes;
 }
 
@@ -149,13 +152,15 @@ std::vector<std::byte> encode_film_sums(const FilmSums& film) {
   head += '\n';
   const auto text = bytes_of(head);
   std::vector<std::byte> bytes(text.begin(), text.end());
-  bytes.reserve(bytes.size() + 4 * (film.tile_spp.size() + planes.size() * film.pixels()) +
+  bytes.reserve(bytes.size() +
+                4 * film.tile_spp.size() * (1 + planes.size() * kernels::k_tile_pixels) +
                 k_checksum_bytes);
   for (const std::uint32_t spp : film.tile_spp)
     put_u32(bytes, spp);
   for (const int plane : planes)
-    for (const float value : film.plane(plane))
-      put_u32(bytes, std::bit_cast<std::uint32_t>(value));
+    for (std::size_t tile = 0; tile < film.tile_spp.size(); ++tile)
+      for (const float value : film.row(tile, static_cast<std::size_t>(plane)))
+        put_u32(bytes, std::bit_cast<std::uint32_t>(value));
   put_checksum(bytes, hash_bytes(bytes));
   return bytes;
 }
@@ -170,9 +175,8 @@ FilmSums decode_film_sums(std::span<const std::byte> bytes, const std::string& n
   const double least_bound = hex_number(reader, reader.value(k_names[4]));
   if (!reader.line().empty()) reader.refuse("its head is longer");
   // Before anything is allocated for a size that a damaged head claims.
-  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   const std::size_t tiles = FilmSums::tiles_along(width) * FilmSums::tiles_along(height);
-  Reader content(reader.take(4 * (tiles + planes.size() * pixels)), name);
+  Reader content(reader.take(4 * tiles * (1 + planes.size() * kernels::k_tile_pixels)), name);
   if (!reader.at_end()) reader.refuse("it is longer");
   FilmSums film = empty_film(width, height);
   if (tone_scale != "none") film.schedule.tone_scale = hex_number(reader, tone_scale);
@@ -180,9 +184,9 @@ FilmSums decode_film_sums(std::span<const std::byte> bytes, const std::string& n
   for (std::uint32_t& spp : film.tile_spp)
     spp = content.u32();
   for (const int plane : planes)
-    for (std::size_t i = 0; i < pixels; ++i)
-      film.planes[static_cast<std::size_t>(plane) * pixels + i] =
-          std::bit_cast<float>(content.u32());
+    for (std::size_t tile = 0; tile < tiles; ++tile)
+      for (float& value : film.row(tile, static_cast<std::size_t>(plane)))
+        value = std::bit_cast<float>(content.u32());
   return film;
 }
 

@@ -13,9 +13,9 @@ namespace ds {
 /// A film under way as bytes, so that tracing goes on from it in another run:
 ///
 ///   file     = head tiles planes checksum
-///   head     = "dsbuild film 1\n" { name "=" value "\n" } "\n"
+///   head     = "dsbuild film 2\n" { name "=" value "\n" } "\n"
 ///   tiles    = { u32 }       samples a pixel of each tile of 4x4 pixels, row by row
-///   planes   = { float32 }   width * height values of each plane that "planes" lists, row by row
+///   planes   = { float32 }   each plane that "planes" lists: 16 values a tile
 ///   checksum = XXH3-128 of all before it, 16 bytes, most significant first
 ///
 /// Numbers are little-endian. Names, in this order and each once:
@@ -24,8 +24,8 @@ namespace ds {
 ///   tone_scale      of ScheduleState, a hexadecimal float, or "none"
 ///   least_bound     of ScheduleState, a hexadecimal float or "inf"
 ///
-/// 36 bytes a pixel where no sample was out of the ordinary. Version history: 1, the first. Another
-/// version is refused, and its picture traced from the start.
+/// 176 bytes a pixel where no sample was out of the ordinary. Version history: 1, the first; 2,
+/// quarters of pixels. Another version is refused, and its picture traced from the start.
 std::vector<std::byte> encode_film_sums(const FilmSums& film);
 /// Throws Error(asset) for bytes that `encode_film_sums` did not write. `name` stands in messages.
 FilmSums decode_film_sums(std::span<const std::byte> bytes, const std::string& name);

@@ -37,7 +37,7 @@ struct EngineSettings {
   int depth_diffuse = 4, depth_glossy = 4, depth_specular = 6;
   int roulette_depth = 3;     ///< first vertex at which Russian roulette may end a path
   float roulette_cap = 0.5f;  ///< least survival probability, (0, 1]
-  float filter_width = 3.0f;  ///< Blackman-Harris, full width in pixels; 0: box of one pixel
+  float filter_width = 3.0f;  ///< Blackman-Harris, full width in pixels; up to 1: a box of one
   std::uint64_t seed = 0;
   /// Samples with a component above this (linear radiance) are scaled down to it, which loses
   /// energy; 0 leaves every sample as it is.
@@ -177,6 +177,6 @@ std::string canonical_kept_engine(const Scene& scene, const Camera& camera,
 std::string canonical_camera(const Camera& camera);
 /// Bumped when host code that can move a pixel changes (mesh normalisation, packing, sky model,
 /// sampling tables).
-inline constexpr int k_host_render_version = 1;
+inline constexpr int k_host_render_version = 2;
 
 }  // namespace ds

@@ -24,6 +24,53 @@ std::uint64_t most_samples(const ErrorTarget& target, const FilmSums& film) {
   return static_cast<std::uint64_t>(target.max_spp) * film.pixels();
 }
 
+/// Calls visit(i, x, y) for the pixels of a rectangle row by row, the i-th being (x, y).
+template <typename Visit>
+void visit_pixels(const PixelRect& rect, const Visit& visit) {
+  std::size_t i = 0;
+  for (std::size_t y = rect.y0; y < rect.y1; ++y)
+    for (std::size_t x = rect.x0; x < rect.x1; ++x)
+      visit(i++, x, y);
+}
+
+struct DevelopedPixel {
+  double sum = 0;      ///< of D(m) over r, g, b
+  double squared = 0;  ///< d^2
+};
+
+DevelopedPixel developed_pixel(const ToneCurve& curve, const PixelEstimate& p) {
+  std::array<float, 3> more{}, less{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    more[c] = p.mean[c] + p.half[c];
+    less[c] = p.mean[c] - p.half[c];
+  }
+  const auto here = curve.at(p.mean), above = curve.at(more), below = curve.at(less);
+  DevelopedPixel pixel;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double up = above[c] - here[c], down = below[c] - here[c];
+    pixel.squared += (up * up + down * down) / 2;
+    pixel.sum += here[c];
+  }
+  return pixel;
+}
+
+/// For each pixel what the region's pixels have of their variance from it, all summed up.
+std::vector<float> weights_of(const FilmSums& film, const PixelFilter& filter,
+                              const std::vector<std::uint8_t>& region) {
+  const auto w = static_cast<std::size_t>(film.width), h = static_cast<std::size_t>(film.height);
+  const std::size_t reach = filter.reach();
+  std::vector<float> weights(film.pixels(), 0.0f);
+  visit_pixels({0, 0, w, h}, [&](std::size_t pixel, std::size_t x, std::size_t y) {
+    if (region[pixel] == 0) return;
+    for (std::size_t v = y - std::min(y, reach); v < std::min(y + reach + 1, h); ++v)
+      for (std::size_t u = x - std::min(x, reach); u < std::min(x + reach + 1, w); ++u)
+        weights[v * w + u] += static_cast<float>(
+            filter.share(static_cast<std::ptrdiff_t>(u) - static_cast<std::ptrdiff_t>(x)) *
+            filter.share(static_cast<std::ptrdiff_t>(v) - static_cast<std::ptrdiff_t>(y)));
+  });
+  return weights;
+}
+
 }  // namespace
 
 std::vector<TileStep> steps_to(const FilmSums& film, std::uint32_t spp) {
@@ -35,11 +82,14 @@ std::vector<TileStep> steps_to(const FilmSums& film, std::uint32_t spp) {
   return steps;
 }
 
-Schedule::Schedule(const ErrorTarget& target, const FilmSums& film,
-                   std::vector<std::uint8_t> region)
+Schedule::Schedule(const ErrorTarget& target, const FilmSums& film, const PixelFilter& filter,
+                   const std::vector<std::uint8_t>& region)
     : target_(target),
       film_(film),
-      region_(std::move(region)),
+      filter_(filter),
+      own_(0),
+      region_(region),
+      weights_(region.empty() ? std::vector<float>{} : weights_of(film, filter, region)),
       state_(film.schedule),
       tiles_(film.tile_spp.size()) {
   DS_ASSERT(region_.empty() || region_.size() == film.pixels());
@@ -47,37 +97,45 @@ Schedule::Schedule(const ErrorTarget& target, const FilmSums& film,
   if (film.samples() == 0) return;
   DS_ASSERT(state_.tone_scale.has_value());
   curve_.emplace(target.tone_map, *state_.tone_scale);
-  for (std::size_t tile = 0; tile < tiles_.size(); ++tile)
+  for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
     measure(tile);
+    measure_own(tile);
+  }
 }
 
 void Schedule::measure(std::size_t number) {
-  Tile tile;
-  film_.visit_tile(number, [&](std::size_t pixel) {
-    if (!region_.empty() && region_[pixel] == 0) return;
+  Tile& tile = tiles_[number];
+  tile.error = {};
+  tile.developed = 0;
+  tile.pixels = 0;
+  const PixelRect rect = film_.tile_rect(number);
+  const std::vector<PixelEstimate> pixels = filtered(film_, filter_, rect);
+  visit_pixels(rect, [&](std::size_t i, std::size_t x, std::size_t y) {
+    if (!region_.empty() && region_[y * static_cast<std::size_t>(film_.width) + x] == 0) return;
+    const DevelopedPixel developed = developed_pixel(*curve_, pixels[i]);
+    tile.error.add(developed.squared);
+    tile.developed += developed.sum;
     ++tile.pixels;
-    const PixelEstimate p = pixel_of(film_, pixel, film_.tile_spp[number]);
-    std::array<float, 3> more{}, less{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      more[c] = p.mean[c] + p.half[c];
-      less[c] = p.mean[c] - p.half[c];
-    }
-    const auto here = curve_->at(p.mean), above = curve_->at(more), below = curve_->at(less);
-    double squared = 0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double up = above[c] - here[c], down = below[c] - here[c];
-      squared += (up * up + down * down) / 2;
-      tile.developed += here[c];
-    }
-    tile.error.add(squared);
   });
-  tiles_[number] = tile;
+}
+
+void Schedule::measure_own(std::size_t number) {
+  Tile& tile = tiles_[number];
+  tile.own = tile.weight = 0;
+  const PixelRect rect = film_.tile_rect(number);
+  const std::vector<PixelEstimate> pixels = filtered(film_, own_, rect);
+  visit_pixels(rect, [&](std::size_t i, std::size_t x, std::size_t y) {
+    const double weight =
+        weights_.empty() ? 1.0 : double{weights_[y * static_cast<std::size_t>(film_.width) + x]};
+    if (!(weight > 0)) return;
+    tile.own += weight * developed_pixel(*curve_, pixels[i]).squared;
+    tile.weight += weight;
+  });
 }
 
 /// w of a pixel: what its squared error would be with one sample.
 double Schedule::sample_variance(std::size_t tile) const {
-  return tiles_[tile].error.sum() * film_.tile_spp[tile] /
-         static_cast<double>(film_.tile_pixels(tile));
+  return tiles_[tile].own * film_.tile_spp[tile] / static_cast<double>(film_.tile_pixels(tile));
 }
 
 double Schedule::gain(std::size_t tile) const {
@@ -87,7 +145,7 @@ double Schedule::gain(std::size_t tile) const {
   int count = 0;
   for (std::size_t v = y > 0 ? y - 1 : 0; v < std::min(y + 2, rows); ++v)
     for (std::size_t u = x > 0 ? x - 1 : 0; u < std::min(x + 2, columns); ++u) {
-      if ((u == x && v == y) || tiles_[v * columns + u].pixels == 0) continue;
+      if ((u == x && v == y) || !(tiles_[v * columns + u].weight > 0)) continue;
       around += sample_variance(v * columns + u);
       ++count;
     }
@@ -100,7 +158,7 @@ double Schedule::gain(std::size_t tile) const {
 std::vector<TileStep> Schedule::greatest_gains() const {
   std::vector<std::pair<double, std::size_t>> gains;
   for (std::size_t tile = 0; tile < tiles_.size(); ++tile)
-    if (tiles_[tile].pixels > 0 && film_.tile_spp[tile] < k_most_spp)
+    if (tiles_[tile].weight > 0 && film_.tile_spp[tile] < k_most_spp)
       gains.emplace_back(gain(tile), tile);
   std::sort(gains.begin(), gains.end(), [](const auto& a, const auto& b) {
     return a.first > b.first || (a.first == b.first && a.second < b.second);
@@ -128,11 +186,21 @@ std::vector<TileStep> Schedule::next() {
 
 void Schedule::traced(const std::vector<TileStep>& steps) {
   if (!curve_) {
-    state_.tone_scale = tone_map_scale(film_of(film_), target_.tone_map);
+    state_.tone_scale = tone_map_scale(film_of(film_, filter_), target_.tone_map);
     curve_.emplace(target_.tone_map, *state_.tone_scale);
   }
-  for (const TileStep& step : steps)
-    measure(step.tile);
+  std::vector<bool> stale(tiles_.size(), false);
+  const std::size_t reach = (filter_.reach() + k_tile_size - 1) / k_tile_size;
+  const std::size_t columns = film_.tiles_x(), rows = film_.tiles_y();
+  for (const TileStep& step : steps) {
+    measure_own(step.tile);
+    const std::size_t x = step.tile % columns, y = step.tile / columns;
+    for (std::size_t v = y - std::min(y, reach); v < std::min(y + reach + 1, rows); ++v)
+      for (std::size_t u = x - std::min(x, reach); u < std::min(x + reach + 1, columns); ++u)
+        stale[v * columns + u] = true;
+  }
+  for (std::size_t tile = 0; tile < tiles_.size(); ++tile)
+    if (stale[tile]) measure(tile);
 }
 
 ErrorEstimate Schedule::error() const {
@@ -145,7 +213,7 @@ ErrorEstimate Schedule::error() const {
     pixels += tile.pixels;
   }
   const double values = 3 * static_cast<double>(pixels);
-  return sum.estimate(developed / values, values);
+  return sum.estimate(developed / values, values, filter_.correlation());
 }
 
 bool Schedule::comes_by(const ErrorTarget& target, const FilmSums& film) {

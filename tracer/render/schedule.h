@@ -4,6 +4,7 @@
 #include "tracer/render/develop.h"
 #include "tracer/render/film.h"
 #include "tracer/render/film_error.h"
+#include "tracer/render/pixel_filter.h"
 
 #include <cstdint>
 #include <optional>
@@ -31,12 +32,14 @@ std::vector<TileStep> steps_to(const FilmSums& film, std::uint32_t spp);
 /// over r, g, b. film_error.h says why, and what interval that has. The picture's error is
 /// sqrt(mean d^2) / mean D(m) over all pixels and channels. D is before rounding to 8 bits, its
 /// scale the one the tone map finds after the first step. With a region "all pixels" are its own,
-/// and tiles that hold none of them keep what the first step gives.
+/// and tiles that serve none of them keep what the first step gives.
 ///
 /// First every pixel gets k_first_spp. Then, time and again, the tiles of greatest gain are
 /// doubled, until they have taken 1 / k_batch of the samples so far. With errors that fall as 1 / n
 /// the gain of a sample is w / n^2, w = n * mean d^2 of a tile: so each tile gets samples in
-/// proportion to sqrt(w), which is the least error for the samples there are. Doubling keeps the
+/// proportion to sqrt(w), which is the least error for the samples there are. This d is of the mean
+/// of the pixel's own samples, as what a tile's samples do is wanted here, and weighs as much as
+/// the region's pixels have their error from that pixel. Doubling keeps the
 /// halves powers of two, where Sobol' points are best.
 ///
 /// A tile that has by chance met little of its light looks exact; were it left so, pictures would
@@ -49,7 +52,8 @@ class Schedule {
 
   /// The film must outlive this. One with samples must be of a Schedule for the same tone map and
   /// region. `region`: not 0 where a pixel belongs to it, one at least; empty: all do.
-  Schedule(const ErrorTarget& target, const FilmSums& film, std::vector<std::uint8_t> region = {});
+  Schedule(const ErrorTarget& target, const FilmSums& film, const PixelFilter& filter,
+           const std::vector<std::uint8_t>& region = {});
 
   /// What to trace next; nothing once the error is reached or the next step would pass max_spp.
   std::vector<TileStep> next();
@@ -65,18 +69,23 @@ class Schedule {
 
  private:
   struct Tile {
-    ErrorSum error;
-    double developed = 0;    ///< sum of D(m) over pixels and channels
+    ErrorSum error;          ///< of the region's pixels
+    double developed = 0;    ///< sum of D(m) over them and the channels
     std::size_t pixels = 0;  ///< of the region
+    double own = 0;          ///< sum of d^2 of the pixels' own means, each times its weight
+    double weight = 0;       ///< sum of the pixels' weights
   };
   void measure(std::size_t tile);
+  void measure_own(std::size_t tile);
   double sample_variance(std::size_t tile) const;
   double gain(std::size_t tile) const;
   std::vector<TileStep> greatest_gains() const;
 
   ErrorTarget target_;
   const FilmSums& film_;
+  PixelFilter filter_, own_;  ///< own_: a pixel's own samples
   std::vector<std::uint8_t> region_;
+  std::vector<float> weights_;  ///< of pixels, see above; empty: 1
   ScheduleState state_;
   std::optional<ToneCurve> curve_;
   std::vector<Tile> tiles_;

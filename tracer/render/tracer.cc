@@ -7,6 +7,7 @@
 #include "tracer/render/film.h"
 #include "tracer/render/images.h"
 #include "tracer/render/path_programs.h"
+#include "tracer/render/pixel_filter.h"
 #include "tracer/render/render.h"
 #include "tracer/render/schedule.h"
 #include "tracer/render/view.h"
@@ -87,18 +88,16 @@ struct Tracer::State {
                                               : 64;
   }
 
-  /// The packed scene depends on the features (numbers) and the filter: both may change from
-  /// picture to picture.
+  /// The packed scene depends on the features (numbers), which may change from picture to picture.
   void prepare(const Camera& camera, const EngineSettings& engine) {
     if (!scene) fail(ErrorKind::device, "no scene was set before tracing");
     const Features wanted = features(*scene, camera);
     // The lens changes the program, not the numbers in the tables.
     Features numbering = wanted;
     numbering.lens = false;
-    if (!packed_for || *packed_for != numbering || packed_filter != engine.filter_width) {
-      device_scene = upload(device, pack_scene(*scene, wanted, engine.filter_width, quality()));
+    if (!packed_for || *packed_for != numbering) {
+      device_scene = upload(device, pack_scene(*scene, wanted, quality()));
       packed_for = numbering;
-      packed_filter = engine.filter_width;
     }
     if (!program_for || *program_for != wanted || program_math != engine.math) {
       path_kernel = device.kernel(programs.get(wanted, engine.math), "trace_paths");
@@ -144,7 +143,6 @@ struct Tracer::State {
   std::optional<Scene> scene;
   DeviceScene device_scene;
   std::optional<Features> packed_for, program_for;
-  float packed_filter = 0;
   MathMode program_math = MathMode::strict;
   Program geometry_program;
   Buffer count_rows;
@@ -283,15 +281,16 @@ Film Tracer::trace(const Camera& camera, const EngineSettings& engine,
       if (progress) progress({base + done, total});
     });
   };
+  const PixelFilter filter(engine.filter_width);
   Film film;
   if (engine.target) {
-    Schedule schedule(*engine.target, picture.film(), error_region(camera, engine));
+    Schedule schedule(*engine.target, picture.film(), filter, error_region(camera, engine));
     for (auto steps = schedule.next(); !steps.empty(); steps = schedule.next()) {
       trace_steps(steps);
       schedule.traced(steps);
     }
     picture.film().schedule = schedule.state();
-    film = film_of(picture.film());
+    film = film_of(picture.film(), filter);
     const ErrorEstimate error = schedule.error();
     film.facts.developed_error = error.value;
     film.facts.developed_low = error.low;
@@ -299,7 +298,7 @@ Film Tracer::trace(const Camera& camera, const EngineSettings& engine,
     film.facts.capped = error.high > engine.target->error;
   } else {
     trace_steps(steps_to(picture.film(), static_cast<std::uint32_t>(engine.spp)));
-    film = film_of(picture.film());
+    film = film_of(picture.film(), filter);
   }
   film.traced_samples = picture.film().samples() - before;
   if (kept != nullptr) *kept = std::move(picture.film());
@@ -313,10 +312,8 @@ Geometry Tracer::trace_geometry(const Camera& camera, int width, int height) {
     // Any numbering will do: mask and depth ask no material.
     Features features = features_of(*s.scene, camera);
     features.lens = false;
-    s.device_scene = upload(
-        s.device, pack_scene(*s.scene, features, EngineSettings{}.filter_width, s.quality()));
+    s.device_scene = upload(s.device, pack_scene(*s.scene, features, s.quality()));
     s.packed_for = features;
-    s.packed_filter = EngineSettings{}.filter_width;
   }
   if (!s.has_geometry_program) {
     s.geometry_program =

@@ -7,7 +7,7 @@
 namespace ds {
 
 /// Counted up where a Schedule steps another way.
-inline constexpr int k_schedule_version = 2;
+inline constexpr int k_schedule_version = 3;
 
 /// Axes of the camera in world space: unit, orthogonal.
 struct CameraFrame {

@@ -14,7 +14,7 @@ namespace ds {
 namespace {
 
 PackedScene pack(const Scene& scene) {
-  return pack_scene(scene, features_of(scene, Camera{}), 2.0f, BvhQuality::medium);
+  return pack_scene(scene, features_of(scene, Camera{}), BvhQuality::medium);
 }
 
 float number(const Words& words, std::size_t i) {
@@ -110,49 +110,6 @@ TEST(PackLights, BlackLightsAreNotThere) {
       {pictures::point_light({0, 0, 1}, {0, 0, 0}), pictures::point_light({0, 0, 2}, {1, 1, 1})}));
   EXPECT_EQ(packed.data.light_count, 1u);
   EXPECT_EQ(number(packed.lights, kernels::k_light_probability), 1);
-}
-
-/// The filter's table: inverse cumulative, offsets in pixels.
-std::vector<float> filter(float width) {
-  Words tables;
-  EXPECT_EQ(pack_filter(width, tables), 0u);
-  std::vector<float> values;
-  for (std::size_t i = 0; i < tables.words().size(); ++i)
-    values.push_back(number(tables, i));
-  return values;
-}
-
-TEST(PackFilter, BoxIsOnePixelWide) {
-  const std::vector<float> box = filter(0);
-  ASSERT_EQ(box.size(), kernels::k_filter_size + 1u);
-  for (std::size_t i = 0; i < box.size(); ++i)
-    EXPECT_NEAR(double{box[i]}, static_cast<double>(i) / double(kernels::k_filter_size) - 0.5,
-                1e-6);
-}
-
-TEST(PackFilter, BlackmanHarrisIsSymmetricAndAsWideAsSaid) {
-  for (const float width : {1.5f, 3.0f, 4.0f}) {
-    const std::vector<float> table = filter(width);
-    EXPECT_NEAR(table.front(), -width / 2, 0.08f * width);
-    EXPECT_TRUE(std::is_sorted(table.begin(), table.end()));
-    double variance = 0;
-    for (std::size_t i = 0; i + 1 < table.size(); ++i) {
-      EXPECT_NEAR(table[i], -table[table.size() - 1 - i], 2e-3f * width);
-      const double middle = 0.5 * (double{table[i]} + double{table[i + 1]});
-      variance += middle * middle / double(kernels::k_filter_size);
-    }
-    // The window's variance by a fine sum in double.
-    double expected = 0, weights = 0;
-    for (int i = 0; i < 20000; ++i) {
-      const double x = (i + 0.5) / 20000;
-      const auto c = [&](int k) { return std::cos(2 * 3.14159265358979 * k * x); };
-      const double w = 0.35875 - 0.48829 * c(1) + 0.14128 * c(2) - 0.01168 * c(3);
-      expected += w * (x - 0.5) * (x - 0.5);
-      weights += w;
-    }
-    // 256 straight pieces stretch the tails, where the density is least: 1.5 % of the variance.
-    EXPECT_NEAR(variance, expected / weights * double{width} * double{width}, 0.016 * variance);
-  }
 }
 
 }  // namespace

@@ -20,9 +20,12 @@ FilmSums some_film() {
   FilmSums film = empty_film(11, 9);
   for (std::size_t i = 0; i < film.tile_spp.size(); ++i)
     film.tile_spp[i] = static_cast<std::uint32_t>(16u << i);
-  for (std::size_t i = 0; i < kernels::k_film_nan * film.pixels(); ++i)
-    film.planes[i] = static_cast<float>(i) * 0.37f - 100;
-  film.planes[kernels::k_film_outliers * film.pixels() + 5] = 1;
+  float next = -100;
+  for (std::size_t tile = 0; tile < film.tile_spp.size(); ++tile)
+    for (std::size_t plane = 0; plane < kernels::k_film_nan; ++plane)
+      for (float& value : film.row(tile, plane))
+        value = next += 0.37f;
+  film.row(1, kernels::k_film_outliers)[5] = 1;
   film.schedule.tone_scale = 0.1;
   film.schedule.least_bound = 0.25;
   return film;
@@ -70,12 +73,12 @@ TEST(FilmFile, ReadsBackWhatWasWritten) {
 TEST(FilmFile, IsWhatItsGrammarSays) {
   FilmSums film = empty_film(1, 1);
   film.tile_spp[0] = 0x01020304;
-  film.planes[kernels::k_film_sum + 1] = 1;
+  film.row(0, kernels::k_film_sum + 1)[0] = 1;
   film.schedule.tone_scale = 0.5;
   const std::string content =
-      "dsbuild film 1\nwidth=1\nheight=1\nplanes=1\ntone_scale=0x1p-1\nleast_bound=inf\n\n"
+      "dsbuild film 2\nwidth=1\nheight=1\nplanes=1\ntone_scale=0x1p-1\nleast_bound=inf\n\n"
       "\x04\x03\x02\x01" +
-      std::string("\0\0\x80\x3f", 4);
+      std::string("\0\0\x80\x3f", 4) + std::string(60, '\0');
   EXPECT_EQ(text_of(encode_film_sums(film)), text_of(bytes_with_checksum(content)));
 }
 
@@ -98,14 +101,14 @@ TEST(FilmFile, RefusesWhatAnotherVersionWouldHaveWritten) {
     std::string text = content;
     return refusal(bytes_with_checksum(text.replace(text.find(from), from.size(), to)));
   };
-  EXPECT_THAT(changed("film 1", "film 2"), HasSubstr("it begins otherwise"));
+  EXPECT_THAT(changed("film 2", "film 1"), HasSubstr("it begins otherwise"));
   EXPECT_THAT(changed("width=11", "width=0"), HasSubstr("wanted a number in [1, 16384]"));
   EXPECT_THAT(changed("width=11", "width=11x"), HasSubstr("wanted a number"));
   EXPECT_THAT(changed("height=9", "height=8"), HasSubstr("it is longer"));
   EXPECT_THAT(changed("height=9", "height=16"), HasSubstr("it is cut off"));
   EXPECT_THAT(changed("height=9", "breadth=9"), HasSubstr("wanted height=..."));
   EXPECT_THAT(changed("planes=0 1", "planes=1 0"), HasSubstr("out of order"));
-  EXPECT_THAT(changed("planes=0 1", "planes=0 14"), HasSubstr("wanted a number in [0, 13]"));
+  EXPECT_THAT(changed("planes=0 1", "planes=0 49"), HasSubstr("wanted a number in [0, 48]"));
   EXPECT_THAT(changed("least_bound=0x", "least_bound=0y"), HasSubstr("hexadecimal float"));
   EXPECT_THAT(changed("tone_scale=0x", "tone_scale=zx"), HasSubstr("hexadecimal float"));
   EXPECT_THAT(changed("\n\n", "\nmore=1\n\n"), HasSubstr("its head is longer"));
