@@ -3,9 +3,8 @@
 // same_bits_test run it in processes of their own, where threads, CPU level and device are what the
 // environment says:
 //
-//   picture_bits [--device NAME] [--lanes N] [--work-group N] [--full] [--high-bvh] [--programs
-//   DIR]
-//                [--size WxH] [--spp N] [--picture NAME]...
+//   picture_bits [--device NAME] [--lanes N] [--work-group N] [--full] [--high-bvh]
+//                [--bvh-width N] [--programs DIR] [--size WxH] [--spp N] [--picture NAME]...
 //
 // Output: golden_bits.txt's lines (bits.h), then "device NAME".
 #include "tests/render/bits.h"
@@ -39,6 +38,8 @@ pictures::BitsRequest parse(int count, char** arguments) {
       request.tracer.full_program = true;
     } else if (option == "--high-bvh") {
       request.tracer.high_quality_bvh = true;
+    } else if (option == "--bvh-width") {
+      request.tracer.bvh_width = number(value());
     } else if (option == "--device") {
       request.tracer.device = value();
     } else if (option == "--lanes") {

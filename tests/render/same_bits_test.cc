@@ -48,6 +48,12 @@ TEST(SameBits, BvhQualityDoesNotChangeABit) {
   expect_same_bits([](TracerOptions& o) { o.high_quality_bvh = true; });
 }
 
+class BvhWidths : public testing::TestWithParam<int> {};
+TEST_P(BvhWidths, DoNotChangeABit) {
+  expect_same_bits([](TracerOptions& o) { o.bvh_width = GetParam(); });
+}
+INSTANTIATE_TEST_SUITE_P(SameBits, BvhWidths, testing::Values(2, 4));
+
 /// What picture_bits prints with this many threads.
 std::string bits_in_child(int threads) {
   const std::string command = "POCL_MAX_PTHREAD_COUNT=" + std::to_string(threads) +

@@ -16,6 +16,7 @@ using namespace kernels;
 
 using Corners = std::array<Vec3, 3>;
 constexpr std::size_t k_width = k_bvh_width;
+static_assert(k_most_bvh_width == k_bvh_width);
 
 /// Costs of visiting a node and a leaf of up to eight triangles, in one unit: the kernels' steps
 /// for them take 105 and about 130 instructions.
@@ -27,19 +28,20 @@ constexpr float k_leaf_cost = 1.2f;
 /// Compressed Wide BVHs", section 3.1, with leaves of up to eight triangles at one price.
 class Collapse {
  public:
-  explicit Collapse(std::span<const BinaryNode> tree) : tree_(tree), choices_(tree.size()) {
+  Collapse(std::span<const BinaryNode> tree, std::size_t width)
+      : tree_(tree), width_(width), choices_(tree.size()) {
     for (std::size_t i = 0; i < tree.size(); ++i)
       decide(i);
   }
 
   bool is_leaf(std::uint32_t node) const { return choices_[node].is_leaf; }
 
-  /// Children of the wide node made of inner node `node`: two to eight.
+  /// Children of the wide node made of inner node `node`: two to `width`.
   std::vector<std::uint32_t> children(std::uint32_t node) const {
     std::vector<std::uint32_t> found;
-    const std::size_t left = choices_[node].left_share[k_width];
+    const std::size_t left = choices_[node].left_share[width_];
     collect(tree_[node].left, left, found);
-    collect(tree_[node].right, k_width - left, found);
+    collect(tree_[node].right, width_ - left, found);
     return found;
   }
 
@@ -63,10 +65,10 @@ class Collapse {
       choice.cost.fill(as_leaf);
       return;
     }
-    const float as_node = split(node, k_width, choice.left_share[k_width]) + area * k_node_cost;
+    const float as_node = split(node, width_, choice.left_share[width_]) + area * k_node_cost;
     choice.is_leaf = as_leaf <= as_node;
     choice.cost[1] = std::min(as_leaf, as_node);
-    for (std::size_t count = 2; count < k_width; ++count) {
+    for (std::size_t count = 2; count < width_; ++count) {
       std::uint8_t left = 0;
       const float cost = split(node, count, left);
       const bool better = cost < choice.cost[count - 1];
@@ -102,14 +104,15 @@ class Collapse {
   }
 
   std::span<const BinaryNode> tree_;
+  std::size_t width_;
   std::vector<Choice> choices_;
 };
 
 /// Writes the wide tree in the kernels' layout, depth first.
 class Flattener {
  public:
-  Flattener(std::span<const BinaryNode> tree, std::span<const Corners> triangles)
-      : tree_(tree), triangles_(triangles), collapse_(tree) {}
+  Flattener(std::span<const BinaryNode> tree, std::span<const Corners> triangles, std::size_t width)
+      : tree_(tree), triangles_(triangles), collapse_(tree, width) {}
 
   Bvh run() {
     const auto root = static_cast<std::uint32_t>(tree_.size() - 1);
@@ -202,9 +205,10 @@ class Flattener {
 
 }  // namespace
 
-Bvh build_bvh(std::span<const Corners> triangles, BvhQuality quality) {
+Bvh build_bvh(std::span<const Corners> triangles, BvhQuality quality, int width) {
+  DS_ASSERT(width >= k_least_bvh_width && width <= k_most_bvh_width);
   const std::vector<BinaryNode> tree = build_binary_tree(triangles, quality);
-  return Flattener(tree, triangles).run();
+  return Flattener(tree, triangles, static_cast<std::size_t>(width)).run();
 }
 
 }  // namespace ds

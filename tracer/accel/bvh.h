@@ -18,11 +18,15 @@ struct Bvh {
 
 enum class BvhQuality { low, medium, high };
 
+inline constexpr int k_least_bvh_width = 2, k_most_bvh_width = 8;
+
 /// Builds the tree over triangles given by their corners; a triangle's id is its index. At least
-/// one triangle; all coordinates finite and at most 1e18 in size. Quality changes the speed of
-/// rays, never what they hit. Throws Error(device) where Embree fails or the tree is deeper than
-/// the kernels' stack allows.
+/// one triangle; all coordinates finite and at most 1e18 in size. A node has at most `width`
+/// children, k_least_bvh_width to k_most_bvh_width; its layout is of eight, and leaves hold up to
+/// eight triangles, whatever the width. Quality and width change the speed of rays, never what they
+/// hit. Throws Error(device) where Embree fails or the tree is deeper than the kernels' stack
+/// allows (k_bvh_depth of kernels/types.h), which a narrow one is sooner.
 Bvh build_bvh(std::span<const std::array<Vec3, 3>> triangles,
-              BvhQuality quality = BvhQuality::medium);
+              BvhQuality quality = BvhQuality::medium, int width = k_most_bvh_width);
 
 }  // namespace ds

@@ -133,11 +133,12 @@ std::vector<std::uint32_t> first_triangles(const Scene& scene) {
   return first;
 }
 
-PackedScene pack_scene(const Scene& scene, const Features& features, BvhQuality quality) {
+PackedScene pack_scene(const Scene& scene, const Features& features, BvhQuality quality,
+                       int bvh_width) {
   const std::vector<Corners> corners = all_corners(scene);
   if (corners.empty()) fail(ErrorKind::asset, "the scene has no triangle");
   PackedScene packed;
-  packed.bvh = build_bvh(corners, quality);
+  packed.bvh = build_bvh(corners, quality, bvh_width);
   const std::vector<std::uint32_t> texels = pack_texels(scene, packed.tables);
   pack_materials(scene, features, texels, packed);
   std::vector<std::uint32_t> mesh_lights;

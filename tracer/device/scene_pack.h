@@ -40,8 +40,9 @@ struct PackedScene {
 
 /// Images must be loaded. `features` gives the numbers of materials, textures and lights: the
 /// scene's own, or all_features(). Throws Error(asset) for a scene without triangles or with what
-/// the tracer cannot hold.
-PackedScene pack_scene(const Scene& scene, const Features& features, BvhQuality quality);
+/// the tracer cannot hold. `bvh_width`: build_bvh's.
+PackedScene pack_scene(const Scene& scene, const Features& features, BvhQuality quality,
+                       int bvh_width = k_most_bvh_width);
 
 /// A triangle's row number where objects stand one behind the other: index of the object's first
 /// triangle.

@@ -104,6 +104,7 @@ struct TracerOptions {
   int work_group_size = 0;    ///< 0 = 8
   bool full_program = false;  ///< compile every effect in, used or not
   bool high_quality_bvh = false;
+  int bvh_width = 8;         ///< most children of a node, 2 .. 8
   bool count_rays = false;   ///< see Tracer::ray_counts; costs a few percent
   bool plain_sums = false;   ///< samples are added in plain floats, to tell what compensating costs
   std::string cache_folder;  ///< compiled programs; "" = the user's cache folder
@@ -128,6 +129,7 @@ struct RayCounts {
 /// Keeps the last scene's device data, so many cameras of one scene cost one upload.
 class Tracer {
  public:
+  /// Throws Error(device), or Error(usage) for options out of their range.
   explicit Tracer(const TracerOptions& options);
   ~Tracer();
   Tracer(const Tracer&) = delete;

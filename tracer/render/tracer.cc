@@ -81,6 +81,9 @@ struct Tracer::State {
                  fmt::format("-DDS_LANES={}{}{}", lanes, o.count_rays ? " -DDS_COUNT_RAYS" : "",
                              o.plain_sums ? " -DDS_PLAIN_SUMS" : ""),
                  o.cache_folder) {
+    if (options.bvh_width < k_least_bvh_width || options.bvh_width > k_most_bvh_width)
+      fail(ErrorKind::usage, "bvh_width must be in [{}, {}], got {}", k_least_bvh_width,
+           k_most_bvh_width, options.bvh_width);
     // A CPU's threads take groups as they get done: small ones share a launch out evenly. A GPU
     // runs a group's items side by side.
     local_size = options.work_group_size != 0 ? static_cast<std::size_t>(options.work_group_size)
@@ -96,7 +99,7 @@ struct Tracer::State {
     Features numbering = wanted;
     numbering.lens = false;
     if (!packed_for || *packed_for != numbering) {
-      device_scene = upload(device, pack_scene(*scene, wanted, quality()));
+      device_scene = upload(device, pack_scene(*scene, wanted, quality(), options.bvh_width));
       packed_for = numbering;
     }
     if (!program_for || *program_for != wanted || program_math != engine.math) {
@@ -312,7 +315,8 @@ Geometry Tracer::trace_geometry(const Camera& camera, int width, int height) {
     // Any numbering will do: mask and depth ask no material.
     Features features = features_of(*s.scene, camera);
     features.lens = false;
-    s.device_scene = upload(s.device, pack_scene(*s.scene, features, s.quality()));
+    s.device_scene =
+        upload(s.device, pack_scene(*s.scene, features, s.quality(), s.options.bvh_width));
     s.packed_for = features;
   }
   if (!s.has_geometry_program) {

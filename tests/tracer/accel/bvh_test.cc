@@ -18,19 +18,13 @@ namespace ds {
 namespace {
 
 using rays::Corners;
+using rays::corners_of;
 using rays::TestHit;
 using rays::TestRay;
 using rays::Tree;
 
 constexpr float k_infinity = std::numeric_limits<float>::infinity();
 constexpr float k_nan = std::numeric_limits<float>::quiet_NaN();
-
-std::vector<Corners> corners_of(const Mesh& mesh) {
-  std::vector<Corners> corners;
-  for (const auto& t : mesh.triangles)
-    corners.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
-  return corners;
-}
 
 Mesh shipped_mesh() {
   return normalise(read_model(DS_SOURCE_DIR "/assets/models/teapot-1.ply").mesh, {});
@@ -136,9 +130,16 @@ TEST(NearestHit, EqualsEmbreesOnAShippedMesh) {
 TEST(NearestHit, HasTheSameBitsInEveryTree) {
   const std::vector<Corners> corners = corners_of(shipped_mesh());
   const std::vector<TestRay> all = random_rays(50000, 0.16f, 2);
-  const std::vector<TestHit> medium = Tree(corners).nearest(all);
-  EXPECT_EQ(Tree(corners, BvhQuality::low).nearest(all), medium);
-  EXPECT_EQ(Tree(corners, BvhQuality::high).nearest(all), medium);
+  const Tree usual(corners);
+  const std::vector<TestHit> nearest = usual.nearest(all);
+  const Tree::Batched batched = usual.batched(all, 16);
+  for (const BvhQuality quality : {BvhQuality::low, BvhQuality::medium, BvhQuality::high})
+    for (const int width : {2, 3, 4, 8}) {
+      const Tree tree(corners, quality, width);
+      EXPECT_EQ(tree.nearest(all), nearest) << width;
+      EXPECT_EQ(tree.batched(all, 16).nearest, batched.nearest) << width;
+      EXPECT_EQ(tree.batched(all, 16).any, batched.any) << width;
+    }
 }
 
 /// Each triangle alone in a tree, so that no box decides.

@@ -9,10 +9,17 @@
 
 namespace ds::rays {
 
-Tree::Tree(std::span<const Corners> triangles, BvhQuality quality)
+std::vector<Corners> corners_of(const Mesh& mesh) {
+  std::vector<Corners> corners;
+  for (const auto& t : mesh.triangles)
+    corners.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
+  return corners;
+}
+
+Tree::Tree(std::span<const Corners> triangles, BvhQuality quality, int width)
     : device_(""),
       program_(device_.build(rays_program_text(), k_strict_options, DS_TEST_PROGRAMS)) {
-  const Bvh bvh = build_bvh(triangles, quality);
+  const Bvh bvh = build_bvh(triangles, quality, width);
   nodes_ = device_.upload(bvh.nodes);
   leaves_ = device_.upload(bvh.leaves);
 }

@@ -3,6 +3,7 @@
 
 #include "tracer/accel/bvh.h"
 #include "tracer/device/opencl.h"
+#include "tracer/scene/mesh.h"
 
 #include <array>
 #include <cstdint>
@@ -13,6 +14,9 @@
 namespace ds::rays {
 
 using Corners = std::array<Vec3, 3>;
+
+/// A mesh's triangles by their corners, in its order.
+std::vector<Corners> corners_of(const Mesh& mesh);
 
 struct TestRay {
   Vec3 origin, direction;
@@ -29,7 +33,8 @@ struct TestHit {
 /// The tracer's nearest and any hit on the first CPU device.
 class Tree {
  public:
-  explicit Tree(std::span<const Corners> triangles, BvhQuality quality = BvhQuality::medium);
+  explicit Tree(std::span<const Corners> triangles, BvhQuality quality = BvhQuality::medium,
+                int width = k_most_bvh_width);
   std::vector<TestHit> nearest(std::span<const TestRay> rays) const;
   std::vector<std::uint32_t> any(std::span<const TestRay> rays) const;
 

@@ -129,6 +129,20 @@ TEST(Tracer, StopsWhereAsked) {
   }
 }
 
+TEST(Tracer, RefusesATreeWidthThatThereIsNot) {
+  for (const int width : {-1, 0, 1, 9}) {
+    TracerOptions options = pictures::tracer_options();
+    options.bvh_width = width;
+    try {
+      const Tracer tracer(options);
+      ADD_FAILURE() << width;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::usage);
+      EXPECT_EQ(error.what(), fmt::format("bvh_width must be in [2, 8], got {}", width));
+    }
+  }
+}
+
 TEST(Tracer, ProgressEndsAtAllSamples) {
   const pictures::Picture p = pictures::all_effects()[0];
   Tracer tracer(pictures::tracer_options());
