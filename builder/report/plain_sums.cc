@@ -3,6 +3,7 @@
 
 #include "tracer/base/error.h"
 #include "tracer/kernels/layout.h"
+#include "tracer/render/film_error.h"
 
 #include <cmath>
 
@@ -12,7 +13,7 @@ namespace {
 /// Luminance of the pixel whose first value is the `i`-th.
 template <typename Values>
 double pixel_luminance(const Values& values, std::size_t i) {
-  constexpr double weights[3] = {0.2126, 0.7152, 0.0722};
+  constexpr double weights[3] = {k_luminance_r, k_luminance_g, k_luminance_b};
   double sum = 0;
   for (std::size_t q = 0; q < 4; ++q)
     for (std::size_t c = 0; c < 3; ++c)

@@ -28,6 +28,21 @@ std::size_t reach_of(float width) {
   return width > 1 ? static_cast<std::size_t>(std::ceil((double{width} - 1) / 2)) : 0;
 }
 
+std::vector<double> weights_of(float width, std::size_t reach) {
+  if (reach == 0) return {0.5, 0.5};
+  const auto until = [&](std::size_t half) {
+    const double x = double(half) / 2 - double(reach) - 0.5;  // from the pixel's centre
+    return window_integral(std::clamp(x / double{width} + 0.5, 0.0, 1.0));
+  };
+  std::vector<double> weights(2 * (2 * reach + 1));
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    weights[i] = until(i + 1) - until(i);
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (double& weight : weights)
+    weight /= sum;
+  return weights;
+}
+
 /// What quarters are averaged to: r, g, b of all samples, of the even ones, of the odd ones; then
 /// the weight that each of the three had.
 constexpr std::size_t k_means = 12;
@@ -112,39 +127,14 @@ PixelEstimate estimate_of(const Means& sum) {
 
 }  // namespace
 
-PixelFilter::PixelFilter(float width) : reach_(reach_of(width)), weights_(2 * (2 * reach_ + 1)) {
+PixelFilter::PixelFilter(float width)
+    : reach_(reach_of(width)), weights_(weights_of(width, reach_)) {
   DS_ASSERT(width >= 0 && width <= 16);
-  if (reach_ == 0) {
-    weights_ = {0.5, 0.5};
-    return;
-  }
-  const auto until = [&](std::size_t half) {
-    const double x = double(half) / 2 - double(reach_) - 0.5;  // from the pixel's centre
-    return window_integral(std::clamp(x / double{width} + 0.5, 0.0, 1.0));
-  };
-  for (std::size_t i = 0; i < weights_.size(); ++i)
-    weights_[i] = until(i + 1) - until(i);
-  const double sum = std::accumulate(weights_.begin(), weights_.end(), 0.0);
-  for (double& weight : weights_)
-    weight /= sum;
-}
-
-double PixelFilter::noise() const {
   double squares = 0;
   for (const double weight : weights_)
     squares += weight * weight;
-  return 2 * squares * (2 * squares);
-}
-
-double PixelFilter::share(std::ptrdiff_t away) const {
-  double own = 0, all = 0;
-  for (std::size_t i = 0; i < weights_.size(); ++i) {
-    const double square = weights_[i] * weights_[i];
-    all += square;
-    if (static_cast<std::ptrdiff_t>(i / 2) == static_cast<std::ptrdiff_t>(reach_) + away)
-      own += square;
-  }
-  return own / all;
+  for (std::size_t i = 0; i < weights_.size(); i += 2)
+    shares_.push_back((weights_[i] * weights_[i] + weights_[i + 1] * weights_[i + 1]) / squares);
 }
 
 double PixelFilter::correlation() const {

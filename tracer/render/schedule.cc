@@ -59,14 +59,13 @@ std::vector<float> weights_of(const FilmSums& film, const PixelFilter& filter,
                               const std::vector<std::uint8_t>& region) {
   const auto w = static_cast<std::size_t>(film.width), h = static_cast<std::size_t>(film.height);
   const std::size_t reach = filter.reach();
+  const std::span<const double> shares = filter.shares();
   std::vector<float> weights(film.pixels(), 0.0f);
   visit_pixels({0, 0, w, h}, [&](std::size_t pixel, std::size_t x, std::size_t y) {
     if (region[pixel] == 0) return;
     for (std::size_t v = y - std::min(y, reach); v < std::min(y + reach + 1, h); ++v)
       for (std::size_t u = x - std::min(x, reach); u < std::min(x + reach + 1, w); ++u)
-        weights[v * w + u] += static_cast<float>(
-            filter.share(static_cast<std::ptrdiff_t>(u) - static_cast<std::ptrdiff_t>(x)) *
-            filter.share(static_cast<std::ptrdiff_t>(v) - static_cast<std::ptrdiff_t>(y)));
+        weights[v * w + u] += static_cast<float>(shares[u + reach - x] * shares[v + reach - y]);
   });
   return weights;
 }

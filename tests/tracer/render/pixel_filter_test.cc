@@ -41,14 +41,22 @@ FilmSums film_of_quarters(const Value& value) {
   return film;
 }
 
+/// Variance of a pixel over that of the mean of its own samples, where all have the same.
+double noise(const PixelFilter& filter) {
+  double squares = 0;
+  for (const double weight : filter.weights())
+    squares += weight * weight;
+  return 2 * squares * (2 * squares);
+}
+
 TEST(PixelFilter, UpToOnePixelItIsABox) {
   for (const float width : {0.0f, 0.5f, 1.0f}) {
     const PixelFilter box(width);
     EXPECT_EQ(box.reach(), 0u);
     ASSERT_EQ(box.weights().size(), 2u);
     EXPECT_EQ(box.weights()[0], 0.5);
-    EXPECT_EQ(box.noise(), 1);
-    EXPECT_EQ(box.share(0), 1);
+    ASSERT_EQ(box.shares().size(), 1u);
+    EXPECT_EQ(box.shares()[0], 1);
     EXPECT_EQ(box.correlation(), 1);
   }
 }
@@ -113,25 +121,24 @@ TEST(PixelFilter, NoiseAndCorrelationAreThoseOfWhiteNoise) {
     }
     // 49,000 pixels: 0.7 % of standard error of each sum of squares.
     EXPECT_NEAR(own / static_cast<double>(count), 0.25, 0.006);
-    EXPECT_NEAR(squares / own, filter.noise(), 0.03 * filter.noise());
+    EXPECT_NEAR(squares / own, noise(filter), 0.03 * noise(filter));
     const double r = beside / squares, d = diagonal / squares;
     EXPECT_NEAR(d, r * r, 0.02);
     // Of the pixels further away only the width of 4 knows any, and little.
     EXPECT_NEAR(1 + 4 * r * r + 4 * d * d, filter.correlation(), 0.05);
   }
-  EXPECT_NEAR(1 / PixelFilter(3).noise(), 2.5, 0.01);
+  EXPECT_NEAR(1 / noise(PixelFilter(3)), 2.5, 0.01);
 }
 
 TEST(PixelFilter, SharesSumToOne) {
   const PixelFilter filter(4);
-  double sum = 0;
-  for (std::ptrdiff_t away = -2; away <= 2; ++away) {
-    EXPECT_NEAR(filter.share(away), filter.share(-away), 1e-6);
-    sum += filter.share(away);
+  const auto shares = filter.shares();
+  ASSERT_EQ(shares.size(), 5u);
+  EXPECT_NEAR(std::accumulate(shares.begin(), shares.end(), 0.0), 1, 1e-12);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(shares[i], shares[4 - i], 1e-6);
+    EXPECT_GT(shares[i + 1], shares[i]);
   }
-  EXPECT_NEAR(sum, 1, 1e-12);
-  EXPECT_GT(filter.share(0), filter.share(1));
-  EXPECT_EQ(filter.share(3), 0);
 }
 
 /// Quarters without samples, of other counts, and the picture's edges leave an even picture even.
