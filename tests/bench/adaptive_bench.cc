@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an error target saves against the same number of samples for every pixel:
 //
-//   adaptive_bench ASSETS MODEL [PIXELS [REPEATS]]
+//   adaptive_bench ASSETS MODEL [PIXELS [REPEATS [image | model]]]
 //
 // For each environment x material pair of ASSETS a picture of PIXELS x PIXELS (96) is traced with
 // 32 to 512 samples a pixel and by a Schedule with as many samples in all, REPEATS times (3) with
 // different seeds, taking turns, so that other work on the machine hits both alike. Errors are
-// those of the developed pictures against one of 4096 samples and another seed. The uniform
+// those of the developed pictures against one of 4096 samples and another seed, over all pixels or
+// over those that show the model (engine.error_region). The uniform
 // pictures give curves of error over seconds and over samples, log-log between their points; a
 // pair's ratio is what the Schedule took over what the curve has at the Schedule's error. Prints a
 // line a pair and the medians, as text.
@@ -20,6 +21,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -47,10 +49,14 @@ std::vector<fs::path> sorted(const fs::path& folder) {
   return paths;
 }
 
-/// Mean squared difference of the developed pictures over the squared mean of the truth.
-double squared_error(const Film& film, const Film& truth, const ToneCurve& curve) {
-  double squares = 0, mean = 0;
+/// Mean squared difference of the developed pictures over the squared mean of the truth, over the
+/// pixels that are not 0 in `region`.
+double squared_error(const Film& film, const Film& truth, const ToneCurve& curve,
+                     const std::vector<std::uint8_t>& region) {
+  double squares = 0, mean = 0, count = 0;
   for (std::size_t i = 0; i < film.rgb.size(); i += 3) {
+    if (region[i / 3] == 0) continue;
+    count += 3;
     const auto at = [&](const Film& f) { return curve.at({f.rgb[i], f.rgb[i + 1], f.rgb[i + 2]}); };
     const auto a = at(film), b = at(truth);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -58,15 +64,17 @@ double squared_error(const Film& film, const Film& truth, const ToneCurve& curve
       mean += b[c];
     }
   }
-  const auto count = static_cast<double>(film.rgb.size());
   return squares / count / (mean / count * (mean / count));
 }
 
 class Pair {
  public:
-  Pair(const Scene& scene, EngineSettings engine) : scene_(scene), engine_(engine), tracer_({}) {
+  Pair(const Scene& scene, EngineSettings engine, ErrorRegion region)
+      : scene_(scene), engine_(engine), region_(region), tracer_({}) {
     camera_.position = normalized(Vec3d{1, 1, 1}) * 0.252;
     tracer_.set_scene(scene_);
+    mask_ = tracer_.trace_geometry(camera_, engine_.width, engine_.height).mask;
+    if (region_ == ErrorRegion::image) mask_.assign(mask_.size(), 255);
     engine_.spp = k_truth_spp;
     engine_.seed = 1;
     truth_ = tracer_.trace(camera_, engine_);
@@ -83,7 +91,7 @@ class Pair {
       }
       for (std::size_t k = 0; k < k_scheduled_spp.size(); ++k) {
         // No picture is that exact: the samples end it.
-        engine_.target = ErrorTarget{1e-6, k_scheduled_spp[k], scene_.tone_map};
+        engine_.target = ErrorTarget{1e-6, k_scheduled_spp[k], scene_.tone_map, region_};
         add(scheduled[k], curve, repeats);
       }
     }
@@ -110,11 +118,13 @@ class Pair {
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     to.seconds += seconds.count() / repeats;
     to.samples += static_cast<double>(film.traced_samples) / repeats;
-    to.squared_error += squared_error(film, truth_, curve) / repeats;
+    to.squared_error += squared_error(film, truth_, curve, mask_) / repeats;
   }
 
   const Scene& scene_;
   EngineSettings engine_;
+  ErrorRegion region_;
+  std::vector<std::uint8_t> mask_;
   Camera camera_;
   Tracer tracer_;
   Film truth_;
@@ -126,7 +136,8 @@ double median(std::vector<double> values) {
   return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
 }
 
-void measure(const fs::path& assets, const fs::path& model, int pixels, int repeats) {
+void measure(const fs::path& assets, const fs::path& model, int pixels, int repeats,
+             ErrorRegion region) {
   std::array<std::vector<double>, k_scheduled_spp.size()> times, counts;
   for (const fs::path& place : sorted(assets / "environments"))
     for (const fs::path& substance : sorted(assets / "materials")) {
@@ -135,7 +146,7 @@ void measure(const fs::path& assets, const fs::path& model, int pixels, int repe
       load_images(scene);
       EngineSettings engine;
       engine.width = engine.height = pixels;
-      Pair pair(scene, engine);
+      Pair pair(scene, engine, region);
       pair.run(repeats);
       std::string line =
           fmt::format("{:<10} {:<17}", place.filename().string(), substance.stem().string());
@@ -160,10 +171,12 @@ void measure(const fs::path& assets, const fs::path& model, int pixels, int repe
 
 int main(int count, char** arguments) {
   try {
-    if (count < 3 || count > 5)
-      ds::fail(ds::ErrorKind::usage, "wanted ASSETS MODEL [PIXELS [REPEATS]]");
+    const std::string region = count > 5 ? arguments[5] : "image";
+    if (count < 3 || count > 6 || (region != "image" && region != "model"))
+      ds::fail(ds::ErrorKind::usage, "wanted ASSETS MODEL [PIXELS [REPEATS [image | model]]]");
     ds::measure(arguments[1], arguments[2], count > 3 ? std::stoi(arguments[3]) : 96,
-                count > 4 ? std::stoi(arguments[4]) : 3);
+                count > 4 ? std::stoi(arguments[4]) : 3,
+                region == "model" ? ds::ErrorRegion::model : ds::ErrorRegion::image);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "adaptive_bench: error: %s\n", error.what());

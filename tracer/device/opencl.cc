@@ -76,7 +76,9 @@ Handle<cl_program> program_from_source(cl_context context, cl_device_id device,
   cl_int code = CL_SUCCESS;
   Handle<cl_program> program(clCreateProgramWithSource(context, 1, &text, &size, &code));
   check_cl(code, "clCreateProgramWithSource");
-  code = clBuildProgram(program.get(), 1, &device, options.c_str(), nullptr, nullptr);
+  // Else PoCL says on standard error how many there are: of vectors wider than the CPU's, hundreds.
+  const std::string quiet = options + " -w";
+  code = clBuildProgram(program.get(), 1, &device, quiet.c_str(), nullptr, nullptr);
   if (code != CL_SUCCESS)
     fail(ErrorKind::device, "OpenCL: clBuildProgram failed with {}, options \"{}\", build log:\n{}",
          cl_error_name(code), options, build_errors(program.get(), device));
