@@ -14,6 +14,7 @@ namespace {
 
 constexpr long k_database_offset = 0;
 constexpr std::uint64_t k_offset_mask = (std::uint64_t{1} << 62) - 1;
+constexpr long k_datasets_offset = (1L << 62) + 1;  // above those of all images
 
 long offset_of(Hash128 key) {
   return static_cast<long>((key.low & k_offset_mask) + 1);
@@ -58,6 +59,11 @@ std::optional<Claims::Claim> Claims::try_image(Hash128 key) {
   const long offset = offset_of(key);
   if (!set(F_WRLCK, offset, false)) return std::nullopt;
   return std::make_optional<Claim>(*this, offset);
+}
+
+Claims::Claim Claims::own_datasets() {
+  set(F_WRLCK, k_datasets_offset, true);
+  return {*this, k_datasets_offset};
 }
 
 void Claims::share_database() {

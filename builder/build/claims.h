@@ -13,8 +13,9 @@ namespace ds {
 /// process ends, however it ends, so a killed build blocks nobody.
 ///
 /// One byte stands for "the database is open here" (shared by all, exclusive for whoever sets it
-/// aside), one byte for each image that is being made, at an offset taken from its key. Two keys
-/// that share an offset only wait for each other.
+/// aside), one byte for each image that is being made, at an offset taken from its key, and one for
+/// what is true of a dataset as a whole: its id and its manifest. Two keys that share an offset
+/// only wait for each other.
 class Claims {
  public:
   /// Opens or makes the file. Throws Error(io).
@@ -39,6 +40,8 @@ class Claims {
 
   /// Nothing where another process makes it now.
   std::optional<Claim> try_image(Hash128 key);
+  /// Waits while another process enters a dataset of the store or writes a manifest.
+  Claim own_datasets();
   /// Waits for whoever holds it exclusively.
   void share_database();
   /// Nothing is waited for: false where another process has the database open. Replaces the share.

@@ -35,7 +35,8 @@ fs::path normal(const fs::path& path) {
   return whole.has_filename() ? whole : whole.parent_path();  // "out/" is "out"
 }
 
-std::optional<Pointer> read_pointer(const fs::path& folder) {
+/// Nothing where there is none or it is damaged, which a warning says unless `silent`.
+std::optional<Pointer> read_pointer(const fs::path& folder, bool silent = false) {
   const fs::path file = pointer_path(folder);
   std::error_code error;
   if (!fs::exists(file, error)) return std::nullopt;
@@ -45,7 +46,7 @@ std::optional<Pointer> read_pointer(const fs::path& folder) {
   std::getline(text, id);
   std::getline(text, store);
   if (header != k_pointer_header || !Hash128::from_hex(id) || store.empty()) {
-    warn(fmt::format("{}: damaged; the dataset is entered anew", file.string()));
+    if (!silent) warn(fmt::format("{}: damaged; the dataset is entered anew", file.string()));
     return std::nullopt;
   }
   return Pointer{id, normal(folder / k_state_folder / store)};
@@ -119,6 +120,24 @@ Dataset open_folder(const DatasetRequest& request, Disk& disk) {
   return dataset;
 }
 
+/// Finds or makes the dataset's row; in a build, also enters it in the folder and the database.
+void enter_dataset(Dataset& dataset, std::optional<Pointer> known, Pointer pointer,
+                   const DatasetRequest& request, Access access, Disk& disk) {
+  std::optional<Claims::Claim> claim;
+  if (access == Access::build) {
+    // Builds that start at once in a new folder are to enter one dataset, not one each.
+    claim.emplace(dataset.claims->own_datasets());
+    if (!known) known = read_pointer(dataset.folder, true);
+    if (known) pointer.id = known->id;
+  }
+  const std::optional<DatasetRow> row = dataset.database->find_dataset(pointer.id);
+  dataset.row = {pointer.id,         dataset.recipe.name, dataset.recipe.file,
+                 fs::current_path(), request.overrides,   row ? row->manifest : Hash128{}};
+  if (access == Access::look) return;
+  if (known != pointer) write_pointer(dataset.folder, pointer, disk);
+  dataset.database->put_dataset(dataset.row);
+}
+
 Dataset open_recipe(const DatasetRequest& request, Access access, Disk& disk) {
   Dataset dataset;
   dataset.recipe = read_recipe(request.target, request.overrides);
@@ -133,14 +152,7 @@ Dataset open_recipe(const DatasetRequest& request, Access access, Disk& disk) {
     dataset.database = std::make_unique<Database>(fs::path());
   else
     open_store(dataset, pointer.store, disk);
-
-  const std::optional<DatasetRow> row = dataset.database->find_dataset(pointer.id);
-  dataset.row = {pointer.id,         dataset.recipe.name, dataset.recipe.file,
-                 fs::current_path(), request.overrides,   row ? row->manifest : Hash128{}};
-  if (access == Access::build) {
-    if (known != pointer) write_pointer(dataset.folder, pointer, disk);
-    dataset.database->put_dataset(dataset.row);
-  }
+  enter_dataset(dataset, known, pointer, request, access, disk);
   return dataset;
 }
 

@@ -4,6 +4,7 @@
 #include "builder/build/dataset_manifest.h"
 #include "builder/build/host.h"
 #include "builder/build/killed_builds.h"
+#include "builder/build/placed_files.h"
 #include "tracer/base/error.h"
 
 #include <algorithm>
@@ -81,7 +82,6 @@ class Execution {
   ImageMaker maker_;
   BuildResult result_;
   std::map<std::string, std::vector<std::string>> failures_;  ///< image ids by what went wrong
-  std::set<std::string> unfinished_;                          ///< ids
   bool disk_failed_ = false;
   std::int64_t build_number_ = 0;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -93,16 +93,16 @@ void Execution::fail_image(const PlannedImage& image, const std::string& why) {
   observer_.image_failed(image, why);
 }
 
-/// Counts what needs nothing, enters failures, and returns what is to be made, images of one scene
-/// together.
+/// Counts the shard's images and those that need nothing, enters failures, and returns what is to
+/// be made, images of one scene together.
 Execution::Queue Execution::sort_images() {
   Queue queue;
   for (const PlannedImage& image : plan_.images) {
+    if (image.elsewhere) continue;
+    ++result_.images;
     if (image.error) {
-      unfinished_.insert(image.spec.id);
       fail_image(image, image.error->what());
     } else if (image.stale()) {
-      unfinished_.insert(image.spec.id);
       queue.push_back(&image);
     } else {
       ++result_.reused;
@@ -131,7 +131,6 @@ bool Execution::make_one(const PlannedImage& image) {
     result_.traced += work.traced ? 1U : 0U;
     result_.developed += work.developed ? 1U : 0U;
     result_.traced_samples += work.samples;
-    unfinished_.erase(image.spec.id);
     observer_.image_done(image, work);
   } catch (const DamagedDatabase&) {
     throw;
@@ -196,15 +195,17 @@ void Execution::remove_left_over() {
 
 void Execution::finish() {
   maker_.remember_stamps();
+  // Of builds that end at once, the last to write must have seen what all of them placed.
+  const Claims::Claim claim = dataset_.claims->own_datasets();
   if (!cut_short()) remove_left_over();
+  PlacedFiles placed(dataset_);
   std::vector<ImageRecord> records;
   for (const PlannedImage& image : plan_.images) {
-    if (!unfinished_.contains(image.spec.id))
-      records.push_back(image_record(image, *dataset_.database));
-  }
-  for (const ImageRecord& record : records)
-    if (record.film.capped)
+    if (image.error || !placed.all_in_place(image)) continue;
+    const ImageRecord& record = records.emplace_back(image_record(image, *dataset_.database));
+    if (record.film.capped && !image.elsewhere)
       result_.capped.emplace_back(record.id, record.film.developed_high.value_or(0));
+  }
   update_manifest(dataset_, records);
 }
 
@@ -220,7 +221,6 @@ void Execution::log() {
 BuildResult Execution::run() {
   build_number_ = dataset_.database->begin_build(dataset_.row.id, host_name(), ::getpid());
   clean_up_killed_builds(dataset_, build_number_);
-  result_.images = plan_.images.size();
   make_all(sort_images());
   collect_failures();
   result_.not_reached = result_.images - result_.built - result_.reused - result_.failed;

@@ -16,7 +16,7 @@ struct BuildOptions {
   bool force = false;       ///< trace every image again
 };
 
-/// Counts are of images; images = built + reused + failed + not_reached.
+/// Counts are of the shard's images; images = built + reused + failed + not_reached.
 struct BuildResult {
   std::uint64_t images = 0;
   std::uint64_t built = 0;   ///< at least one file was put into the folder
@@ -54,9 +54,9 @@ class BuildObserver {
 /// Makes what the plan found stale: images of one scene one after another, so that a scene is
 /// uploaded once. An image another process is making now is left for last and then found in the
 /// store. Ends early when `stop` is set: what is finished is recorded, the image under way is not.
-/// Afterwards the manifest lists exactly the images whose files are in place, and (where the build
-/// was not cut short) files that no image names any more are removed. Throws only for what concerns
-/// the dataset as a whole.
+/// Afterwards the manifest lists exactly the images whose files are in place, whichever build put
+/// them there, and (where the build was not cut short) what the plan was to remove is removed.
+/// Throws only for what concerns the dataset as a whole.
 BuildResult execute(Dataset& dataset, const Plan& plan, Inputs& inputs, const BuildOptions& options,
                     Disk& disk, const RendererFactory& factory, BuildObserver& observer,
                     const std::atomic<bool>& stop);

@@ -2,14 +2,12 @@
 #include "builder/build/plan.h"
 
 #include "builder/build/limits.h"
+#include "builder/build/placed_files.h"
 
 #include <algorithm>
-#include <set>
 
 namespace ds {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Reasons named in full; what follows is counted.
 constexpr std::size_t k_most_changes = 4;
@@ -22,16 +20,13 @@ class Planner {
         texts_(texts),
         force_(force),
         known_(database_.images(dataset.row.id)),
-        placed_(database_.placed_files(dataset.row.id)) {}
+        placed_(dataset) {}
 
   void plan(PlannedImage& image);
-  std::vector<std::string> left_over(const std::vector<PlannedImage>& images) const;
-  void remember_stamps();
+  PlacedFiles& placed() { return placed_; }
 
  private:
   bool in_store(Hash128 key);
-  /// Empty where the file is in place, else why it is not.
-  std::string why_not_in_place(const PlannedImage& image, const OutputFile& output);
   void plan_files(PlannedImage& image, bool changed);
   void find_kept(PlannedImage& image);
   void add_changes(PlannedImage& image, const PartHashes& before);
@@ -42,30 +37,13 @@ class Planner {
   TextSet& texts_;
   bool force_;
   std::map<std::string, PartHashes> known_;
-  std::map<std::string, PlacedFile> placed_;
-  std::vector<PlacedFile> restamped_;
+  PlacedFiles placed_;
 };
 
 bool Planner::in_store(Hash128 key) {
   if (!dataset_.store) return false;
   const std::optional<Product> product = database_.find_product(key);
   return product && dataset_.store->has(product->object);
-}
-
-std::string Planner::why_not_in_place(const PlannedImage& image, const OutputFile& output) {
-  const auto found = placed_.find(output.path);
-  if (found == placed_.end() || found->second.image != image.spec.id)
-    return output.path + " was never made";
-  PlacedFile& placed = found->second;
-  if (placed.product != output.key) return output.path + " is of an older key";
-  const fs::path file = dataset_.folder / output.path;
-  const std::optional<FileStamp> stamp = stamp_of(file);
-  if (!stamp) return output.path + " is missing";
-  if (placed.stamp == stamp) return "";
-  if (hash_file(file).xxh128 != placed.object) return output.path + " was changed on the disk";
-  placed.stamp = stamp;
-  restamped_.push_back(placed);
-  return "";
 }
 
 void Planner::add_changes(PlannedImage& image, const PartHashes& before) {
@@ -88,7 +66,7 @@ void Planner::find_kept(PlannedImage& image) {
 void Planner::plan_files(PlannedImage& image, bool changed) {
   for (const OutputFile& output : image.keys.outputs) {
     PlannedFile file{output, FileState::in_place};
-    const std::string reason = why_not_in_place(image, output);
+    const std::string reason = placed_.why_not_in_place(image.spec.id, output);
     if (!reason.empty() || force_) {
       // Where a property changed, that is the reason, and the files of older keys follow from it.
       if (!reason.empty() && !changed) image.reasons.push_back(reason);
@@ -117,6 +95,7 @@ void Planner::check_known_picture(const PlannedImage& image) {
 
 void Planner::plan(PlannedImage& image) {
   check_known_picture(image);
+  if (image.elsewhere) return;
   const auto known = known_.find(image.spec.id);
   const bool changed = known != known_.end() && known->second != image.keys.parts;
   if (force_) image.reasons.emplace_back("forced");
@@ -134,25 +113,6 @@ void Planner::plan(PlannedImage& image) {
   if (lost_film) image.reasons.emplace_back("its film is not in the store");
 }
 
-std::vector<std::string> Planner::left_over(const std::vector<PlannedImage>& images) const {
-  std::set<std::string> wanted;
-  for (const PlannedImage& image : images)
-    for (const PlannedFile& file : image.files)
-      wanted.insert(file.output.path);
-  std::vector<std::string> paths;
-  for (const auto& [path, placed] : placed_)
-    if (placed.kind != k_manifest_kind && !wanted.contains(path)) paths.push_back(path);
-  return paths;
-}
-
-void Planner::remember_stamps() {
-  if (restamped_.empty()) return;
-  Transaction transaction(database_.connection());
-  for (const PlacedFile& file : restamped_)
-    database_.put_placed(dataset_.row.id, file);
-  transaction.commit();
-}
-
 }  // namespace
 
 std::uint64_t PlannedImage::samples() const {
@@ -163,12 +123,13 @@ std::uint64_t PlannedImage::samples() const {
          kept_samples;
 }
 
-Plan make_plan(Dataset& dataset, Inputs& inputs, bool force) {
+Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
   Plan plan;
   KeyMaker keys(dataset.recipe, inputs, plan.texts);
   Planner planner(dataset, plan.texts, force);
   for (ImageSpec& spec : expand(dataset.recipe)) {
     PlannedImage image;
+    image.elsewhere = !shard.holds(spec.id);
     image.spec = std::move(spec);
     try {
       if (image.spec.engine.target)
@@ -181,14 +142,15 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force) {
     } catch (const Error& error) {
       PlannedImage failed;
       failed.spec = std::move(image.spec);
+      failed.elsewhere = image.elsewhere;
       failed.error = error;
       image = std::move(failed);
     }
     plan.images.push_back(std::move(image));
   }
-  plan.to_remove = planner.left_over(plan.images);
+  plan.to_remove = planner.placed().left_over(plan.images, shard);
   inputs.remember();
-  planner.remember_stamps();
+  planner.placed().remember_stamps();
   return plan;
 }
 

@@ -4,6 +4,7 @@
 #include "builder/build/dataset.h"
 #include "builder/build/inputs.h"
 #include "builder/build/keys.h"
+#include "builder/build/shard.h"
 #include "builder/build/texts.h"
 #include "builder/recipe/recipe.h"
 
@@ -32,12 +33,13 @@ struct PlannedFile {
 struct PlannedImage {
   ImageSpec spec;
   ImageKeys keys;
+  bool elsewhere = false;  ///< of another shard: nothing below is filled but `error`
   std::vector<PlannedFile> files;
   bool trace_film = false, trace_geometry = false;
   std::uint64_t kept_samples = 0;    ///< of a kept film that its film goes on from
   bool record = false;               ///< the database is behind though no file is
   std::vector<std::string> reasons;  ///< why it is stale, each a sentence; empty where it is not
-  std::optional<Error> error;  ///< a file of its cannot be read: nothing above is filled but `spec`
+  std::optional<Error> error;        ///< a file of its cannot be read: only spec, elsewhere hold
 
   bool stale() const { return !reasons.empty(); }
   /// Camera samples its film still takes; at most, with an error target.
@@ -47,14 +49,15 @@ struct PlannedImage {
 /// A build, before anything is done. A pure reading of recipe, files and database, but for
 /// `Inputs`' memory of hashes.
 struct Plan {
-  std::vector<PlannedImage> images;  ///< in the order of `expand`
-  std::vector<std::string>
-      to_remove;  ///< files dsbuild made that no image names any more, relative to the folder
+  std::vector<PlannedImage> images;    ///< of all shards, in the order of `expand`
+  std::vector<std::string> to_remove;  ///< files dsbuild made, of the shard's images, that no image
+                                       ///< names any more; relative to the folder
   TextSet texts;
 };
 
-/// `force`: every image is traced again. `inputs` must outlive what is executed of the plan.
-Plan make_plan(Dataset& dataset, Inputs& inputs, bool force);
+/// `force`: every image of the shard is traced again. `inputs` must outlive what is executed of the
+/// plan.
+Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard = {});
 
 /// The film and file keys a plan's image had when it was last built, by the text of each part;
 /// nothing for a new image.

@@ -18,6 +18,7 @@ struct Arguments {
   std::string image;   ///< id of an image, or the path of one of its files
   std::vector<std::string> overrides;
   std::string output_folder, store_folder, device;
+  std::string shard = "1/1";
   std::uint64_t rerender = 0, seed = 0;
   std::string report_file, against;
   int most_spp = 0, seeds = 4;
@@ -44,6 +45,7 @@ enum class Option {
   keep_going,
   force,
   explain,
+  shard,
   effects,
   rerender,
   seed,

@@ -84,12 +84,13 @@ int dry_run(const Arguments& arguments, const Plan& plan) {
 }  // namespace
 
 int run_build(const Arguments& arguments) {
+  const Shard shard = read_shard(arguments.shard);
   const std::atomic<bool>& stop = stop_on_signal();
   RealDisk disk;
   Dataset dataset =
       open_dataset(arguments.request(), arguments.dry_run ? Access::look : Access::build, disk);
   Inputs inputs(*dataset.database);
-  const Plan plan = make_plan(dataset, inputs, arguments.force);
+  const Plan plan = make_plan(dataset, inputs, arguments.force, shard);
   if (arguments.dry_run) return dry_run(arguments, plan);
   if (arguments.explain) print_plan(arguments.json ? stderr : stdout, plan);
 

@@ -64,6 +64,12 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
     case Option::explain:
       verb.add_flag("--explain", to.explain, "say why each image is made");
       return;
+    case Option::shard:
+      verb.add_option("--shard", to.shard,
+                      "make only share I of N of the images, chosen by a hash of their names; when "
+                      "all N shares are made the dataset is whole [1/1]")
+          ->type_name("I/N");
+      return;
     case Option::effects:
       verb.add_flag("--effects", to.effects,
                     "list what the image's program simulates and what it leaves out, and why");

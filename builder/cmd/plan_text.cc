@@ -18,9 +18,10 @@ const char* step_of(const PlannedImage& image) {
 
 PlanCounts count(const Plan& plan) {
   PlanCounts counts;
-  counts.images = plan.images.size();
   counts.remove = plan.to_remove.size();
   for (const PlannedImage& image : plan.images) {
+    if (image.elsewhere) continue;
+    ++counts.images;
     const std::string_view step = step_of(image);
     counts.failed += image.error ? 1U : 0U;
     counts.up_to_date += !image.error && step.empty() ? 1U : 0U;
@@ -57,6 +58,7 @@ std::string line_of(const PlannedImage& image) {
 void print_plan(std::FILE* stream, const Plan& plan) {
   std::map<std::string, std::vector<std::string>> failures;
   for (const PlannedImage& image : plan.images) {
+    if (image.elsewhere) continue;
     if (image.error) failures[image.error->what()].push_back(image.spec.id);
     if (image.stale()) fmt::print(stream, "{}\n", line_of(image));
   }

@@ -10,7 +10,7 @@
 
 namespace ds {
 
-/// A plan in numbers.
+/// A plan in numbers, of the shard's images.
 struct PlanCounts {
   std::uint64_t images = 0, up_to_date = 0, failed = 0;
   std::uint64_t stale = 0;    ///< = trace + develop + place
@@ -32,7 +32,7 @@ std::string line_of(const PlannedImage& image);
 /// What it needs: "trace", "develop", "place"; empty for an image that is up to date.
 const char* step_of(const PlannedImage& image);
 
-/// Lists what is stale or fails on the stream, and what is to be removed.
+/// Lists what of the shard is stale or fails on the stream, and what is to be removed.
 void print_plan(std::FILE* stream, const Plan& plan);
 
 /// Prints one JSON object as the last line of standard output. Text that is no UTF-8 is mended with

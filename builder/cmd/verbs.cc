@@ -8,8 +8,8 @@ const std::vector<Verb>& verbs() {
   static const std::vector<Verb> table{
       {"build",
        "make every image of a recipe that is not there yet",
-       {target, overrides, output_folder, store_folder, device, dry_run, keep_going, force, explain,
-        json},
+       {target, overrides, output_folder, store_folder, shard, device, dry_run, keep_going, force,
+        explain, json},
        run_build},
       {"plan",
        "list the images a build would make, and why; or foretell its time and disk",

@@ -40,7 +40,7 @@ class TinyDataset : public testing::Test {
     calls.geometry.clear();
     Dataset dataset = open_dataset(request, Access::build, disk);
     Inputs inputs(*dataset.database);
-    const Plan plan = make_plan(dataset, inputs, options.force);
+    const Plan plan = make_plan(dataset, inputs, options.force, shard);
     BuildObserver observer;
     return execute(
         dataset, plan, inputs, options, disk,
@@ -49,7 +49,7 @@ class TinyDataset : public testing::Test {
   Plan plan() {
     Dataset dataset = open_dataset(request, Access::look, real_disk);
     Inputs inputs(*dataset.database);
-    return make_plan(dataset, inputs, false);
+    return make_plan(dataset, inputs, false, shard);
   }
   std::vector<std::string> stale() {
     std::vector<std::string> ids;
@@ -80,6 +80,7 @@ class TinyDataset : public testing::Test {
 
   RealDisk real_disk;
   DatasetRequest request;
+  Shard shard;
   FakeRenderer::Calls calls;
   std::atomic<bool> stop{false};
 
