@@ -11,7 +11,6 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <string_view>
 
@@ -47,6 +46,18 @@ std::vector<int> planes_with_values(const FilmSums& film) {
       break;
     }
   return planes;
+}
+
+std::string head_of(int width, int height, const std::vector<int>& planes,
+                    const ScheduleState& schedule) {
+  const std::string values[] = {std::to_string(width), std::to_string(height),
+                                fmt::format("{}", fmt::join(planes, " ")),
+                                schedule.tone_scale ? hex_float(*schedule.tone_scale) : "none",
+                                hex_float(schedule.least_bound)};
+  std::string head(k_magic);
+  for (std::size_t i = 0; i < k_names.size(); ++i)
+    head += fmt::format("{}={}\n", k_names[i], values[i]);
+  return head + '\n';
 }
 
 /// What is left to read of a file; every taking is checked.
@@ -104,12 +115,12 @@ int number(const Reader& reader, const std::string& text, int least, int most) {
 }
 
 double hex_number(const Reader& reader, const std::string& text) {
-  if (text == "inf") return std::numeric_limits<double>::infinity();
   double value = 0;
   const char* begin = text.data() + (text.starts_with("0x") ? 2 : 0);
   const char* last = text.data() + text.size();
   const auto [end, error] = std::from_chars(begin, last, value, std::chars_format::hex);
-  if (error != std::errc() || end != last || begin == text.data() || !std::isfinite(value))
+  if (error != std::errc() || end != last || begin == text.data() || !std::isfinite(value) ||
+      std::signbit(value))
     reader.refuse(fmt::format("wanted a hexadecimal float >= 0, found {:?}", text));
   return value;
 }
@@ -122,6 +133,8 @@ std::vector<int> plane_list(const Reader& reader, const std::string& text) {
     if (planes.size() > 1 && planes[planes.size() - 2] >= planes.back())
       reader.refuse("its planes are out of order");
   }
+  // A sample is counted in one at least. So a film takes at most 46 times what is there of it.
+  if (planes.empty()) reader.refuse("it holds no samples");
   return planes;
 }
 
@@ -141,15 +154,8 @@ std::span<const std::byte> checked(std::span<const std::byte> bytes, const std::
 std::vector<std::byte> encode_film_sums(const FilmSums& film) {
   DS_ASSERT(!film.empty());
   const std::vector<int> planes = planes_with_values(film);
-  const ScheduleState& schedule = film.schedule;
-  const std::string values[] = {std::to_string(film.width), std::to_string(film.height),
-                                fmt::format("{}", fmt::join(planes, " ")),
-                                schedule.tone_scale ? hex_float(*schedule.tone_scale) : "none",
-                                hex_float(schedule.least_bound)};
-  std::string head(k_magic);
-  for (std::size_t i = 0; i < k_names.size(); ++i)
-    head += fmt::format("{}={}\n", k_names[i], values[i]);
-  head += '\n';
+  DS_ASSERT(!planes.empty());
+  const std::string head = head_of(film.width, film.height, planes, film.schedule);
   const auto text = bytes_of(head);
   std::vector<std::byte> bytes(text.begin(), text.end());
   bytes.reserve(bytes.size() +
@@ -166,27 +172,40 @@ std::vector<std::byte> encode_film_sums(const FilmSums& film) {
 }
 
 FilmSums decode_film_sums(std::span<const std::byte> bytes, const std::string& name) {
-  Reader reader(checked(bytes, name), name);
+  const auto content = checked(bytes, name);
+  Reader reader(content, name);
   if (reader.line() + '\n' != k_magic) reader.refuse("it begins otherwise");
   const int width = number(reader, reader.value(k_names[0]), 1, k_most_pixels_a_side);
   const int height = number(reader, reader.value(k_names[1]), 1, k_most_pixels_a_side);
   const std::vector<int> planes = plane_list(reader, reader.value(k_names[2]));
+  ScheduleState schedule;
   const std::string tone_scale = reader.value(k_names[3]);
-  const double least_bound = hex_number(reader, reader.value(k_names[4]));
+  if (tone_scale != "none") schedule.tone_scale = hex_number(reader, tone_scale);
+  const std::string least_bound = reader.value(k_names[4]);
+  if (least_bound != "inf") schedule.least_bound = hex_number(reader, least_bound);
   if (!reader.line().empty()) reader.refuse("its head is longer");
+  // The numbers taken have other spellings, such as 07 for 7, beside the one written.
+  const std::string head = head_of(width, height, planes, schedule);
+  if (!std::ranges::equal(content.first(std::min(head.size(), content.size())), bytes_of(head)))
+    reader.refuse("its head is spelled otherwise");
   // Before anything is allocated for a size that a damaged head claims.
   const std::size_t tiles = FilmSums::tiles_along(width) * FilmSums::tiles_along(height);
-  Reader content(reader.take(4 * tiles * (1 + planes.size() * kernels::k_tile_pixels)), name);
+  Reader values(reader.take(4 * tiles * (1 + planes.size() * kernels::k_tile_pixels)), name);
   if (!reader.at_end()) reader.refuse("it is longer");
   FilmSums film = empty_film(width, height);
-  if (tone_scale != "none") film.schedule.tone_scale = hex_number(reader, tone_scale);
-  film.schedule.least_bound = least_bound;
+  film.schedule = schedule;
   for (std::uint32_t& spp : film.tile_spp)
-    spp = content.u32();
-  for (const int plane : planes)
+    spp = values.u32();
+  for (const int plane : planes) {
+    std::uint32_t set = 0;
     for (std::size_t tile = 0; tile < tiles; ++tile)
-      for (float& value : film.row(tile, static_cast<std::size_t>(plane)))
-        value = std::bit_cast<float>(content.u32());
+      for (float& value : film.row(tile, static_cast<std::size_t>(plane))) {
+        const std::uint32_t bits = values.u32();
+        set |= bits;
+        value = std::bit_cast<float>(bits);
+      }
+    if (set == 0) reader.refuse("it lists a plane that is all zero");
+  }
   return film;
 }
 

@@ -20,14 +20,19 @@ namespace ds {
 ///
 /// Numbers are little-endian. Names, in this order and each once:
 ///   width, height   in pixels
-///   planes          which of k_film_* (kernels/types.h) follow, space between; the rest are zero
+///   planes          which of k_film_* (kernels/types.h) follow, space between; the rest, and no
+///                   others, are zero all over; one at least, as every sample is counted
 ///   tone_scale      of ScheduleState, a hexadecimal float, or "none"
 ///   least_bound     of ScheduleState, a hexadecimal float or "inf"
 ///
-/// 176 bytes a pixel where no sample was out of the ordinary. Version history: 1, the first; 2,
-/// quarters of pixels. Another version is refused, and its picture traced from the start.
+/// Every film has one spelling. 176 bytes a pixel where no sample was out of the ordinary. Version
+/// history: 1, the first; 2, quarters of pixels. Another version is refused, and its picture traced
+/// from the start.
+///
+/// The film has samples.
 std::vector<std::byte> encode_film_sums(const FilmSums& film);
-/// Throws Error(asset) for bytes that `encode_film_sums` did not write. `name` stands in messages.
+/// Throws Error(asset) for bytes that `encode_film_sums` would not write. `name` stands in
+/// messages. Takes memory in proportion to the bytes, whatever their head says.
 FilmSums decode_film_sums(std::span<const std::byte> bytes, const std::string& name);
 
 }  // namespace ds

@@ -110,8 +110,28 @@ TEST(FilmFile, RefusesWhatAnotherVersionWouldHaveWritten) {
   EXPECT_THAT(changed("planes=0 1", "planes=1 0"), HasSubstr("out of order"));
   EXPECT_THAT(changed("planes=0 1", "planes=0 49"), HasSubstr("wanted a number in [0, 48]"));
   EXPECT_THAT(changed("least_bound=0x", "least_bound=0y"), HasSubstr("hexadecimal float"));
+  EXPECT_THAT(changed("least_bound=0x", "least_bound=0x-"), HasSubstr("hexadecimal float"));
+  EXPECT_THAT(changed("tone_scale=0x1.999999999999ap-4", "tone_scale=inf"),
+              HasSubstr("hexadecimal float"));
   EXPECT_THAT(changed("tone_scale=0x", "tone_scale=zx"), HasSubstr("hexadecimal float"));
   EXPECT_THAT(changed("\n\n", "\nmore=1\n\n"), HasSubstr("its head is longer"));
+}
+
+/// What is read is written as the same bytes again.
+TEST(FilmFile, RefusesOtherSpellingsOfAFilm) {
+  const auto film = [](const std::string& width, const std::string& planes,
+                       const std::string& bound, const std::string& values) {
+    return refusal(bytes_with_checksum(
+        "dsbuild film 2\nwidth=" + width + "\nheight=1\nplanes=" + planes +
+        "\ntone_scale=none\nleast_bound=" + bound + "\n\n\1" + std::string(3, '\0') + values));
+  };
+  const std::string ones(64, '\1'), zeros(64, '\0');
+  ASSERT_EQ(film("4", "9 10", "0x1p-4", ones + ones), "taken");
+  EXPECT_THAT(film("04", "9 10", "0x1p-4", ones + ones), HasSubstr("spelled otherwise"));
+  EXPECT_THAT(film("4", "9  10", "0x1p-4", ones + ones), HasSubstr("spelled otherwise"));
+  EXPECT_THAT(film("4", "9 10", "0x8p-7", ones + ones), HasSubstr("spelled otherwise"));
+  EXPECT_THAT(film("4", "9 10", "0x1p-4", ones + zeros), HasSubstr("a plane that is all zero"));
+  EXPECT_THAT(film("4", "", "0x1p-4", ""), HasSubstr("it holds no samples"));
 }
 
 }  // namespace
