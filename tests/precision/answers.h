@@ -126,13 +126,35 @@ CameraAnswer ask(const CameraQuestion& q) {
   return {three(ray.origin), three(ray.direction)};
 }
 
+namespace {
+struct Triangle {
+  real3 p0, e1, e2;
+};
+Triangle triangle_of(const std::array<std::array<float, 3>, 3>& corners) {
+  const real3 p0 = of(corners[0]);
+  return {p0, sub(of(corners[1]), p0), sub(of(corners[2]), p0)};
+}
+/// As surface_of of path.cl.
+real3 position_on(const Triangle& t, real b1, real b2) {
+  return add(t.p0, add_scaled(scale(t.e1, b1), t.e2, b2));
+}
+double error_on(const Triangle& t) {
+  return double{position_error(t.p0, t.e1, t.e2)};
+}
+}  // namespace
+
+HitAnswer ask(const HitQuestion& q) {
+  const real2 weights = hit_weights(of(q.origin), of(q.direction), of(q.corners[0]),
+                                    of(q.corners[1]), of(q.corners[2]));
+  const Triangle t = triangle_of(q.corners);
+  return {double{weights.x}, double{weights.y}, three(position_on(t, weights.x, weights.y)),
+          error_on(t)};
+}
+
 SurfaceAnswer ask(const SurfaceQuestion& q) {
-  const real3 p0 = of(q.corners[0]);
-  const real3 e1 = sub(of(q.corners[1]), p0);
-  const real3 e2 = sub(of(q.corners[2]), p0);
-  // As surface_of of path.cl.
-  const real3 position = add(p0, add_scaled(scale(e1, real{q.b1}), e2, real{q.b2}));
-  return {three(position), three(triangle_normal(e1, e2)), double{position_error(p0, e1, e2)}};
+  const Triangle t = triangle_of(q.corners);
+  return {three(position_on(t, real{q.b1}, real{q.b2})), three(triangle_normal(t.e1, t.e2)),
+          error_on(t)};
 }
 
 }  // namespace ds::audit::DS_AUDIT

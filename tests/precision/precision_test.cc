@@ -4,10 +4,9 @@
 // fails the test. A bound is in half-ulps of float (2^-24 = 6e-8) times the condition of the
 // question: how much the exact answer itself moves when an input or an intermediate value that must
 // be rounded moves by one of them.
-#include "tests/precision/questions.h"
+#include "tests/precision/numbers.h"
 #include "tests/precision/stage.h"
 #include "tests/render/pictures.h"
-#include "tests/tracer/accel/rays.h"
 #include "tracer/device/scene_pack.h"
 #include "tracer/render/pixel_filter.h"
 #include "tracer/render/view.h"
@@ -19,50 +18,11 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <random>
 
 namespace ds {
 namespace {
 
 using namespace audit;
-
-/// Numbers in [0, 1), and the ends of that.
-class Numbers {
- public:
-  explicit Numbers(unsigned seed) : random_(seed) {}
-  float next() {
-    const auto bits = static_cast<std::uint32_t>(random_());
-    if (bits % 32 == 0) return 0;
-    if (bits % 32 == 1) return 0.99999994f;
-    return static_cast<float>(bits >> 8) * 0x1p-24f;
-  }
-  double between(double low, double high) { return low + (high - low) * double{next()}; }
-  std::array<float, 3> direction() {
-    const double z = between(-1, 1), turn = between(-M_PI, M_PI);
-    const double s = std::sqrt(std::max(0.0, 1 - z * z));
-    return {static_cast<float>(s * std::cos(turn)), static_cast<float>(s * std::sin(turn)),
-            static_cast<float>(z)};
-  }
-  std::uint32_t bits() { return static_cast<std::uint32_t>(random_()); }
-
- private:
-  std::mt19937 random_;
-};
-
-double distance(const Three& a, const Three& b) {
-  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-}
-double greatest(const Three& a) {
-  return std::max({std::fabs(a[0]), std::fabs(a[1]), std::fabs(a[2])});
-}
-/// Largest difference of a component over the largest component of `b`.
-double relative(const Three& a, const Three& b) {
-  const double scale = greatest(b);
-  return scale == 0 ? greatest(a) : greatest({a[0] - b[0], a[1] - b[1], a[2] - b[2]}) / scale;
-}
-double relative(double a, double b) {
-  return b == 0 ? std::fabs(a) : std::fabs(a - b) / std::fabs(b);
-}
 
 /// A material's inputs with everything at its default but the roughnesses.
 std::vector<float> inputs_of(const NodeType& type, float u, float v, Numbers& numbers) {
@@ -325,129 +285,6 @@ TEST(Precision, Camera) {
     }
   origin.expect_within(2);
   direction.expect_within(4);
-}
-
-TEST(Precision, Surface) {
-  // Triangles of every size, shape and place: the point on them is off their plane by less than the
-  // bound that rays are started at (twice this bound away).
-  Stage off_plane("surface: point off its plane"), normal("surface: normal");
-  Numbers numbers(4);
-  for (int i = 0; i < 40000; ++i) {
-    SurfaceQuestion q;
-    const double size = std::pow(10, numbers.between(-6, 6));
-    const double place = i % 2 == 0 ? 0 : size * std::pow(10, numbers.between(0, 4));
-    for (auto& corner : q.corners)
-      for (float& x : corner)
-        x = static_cast<float>(place + size * numbers.between(-1, 1));
-    q.b1 = numbers.next();
-    q.b2 = (1 - q.b1) * numbers.next();
-    const SurfaceAnswer f = in_float::ask(q), d = in_double::ask(q);
-    const std::string where = fmt::format("{:g} m at {:g} m", size, place);
-    // A sliver's normal is a difference of nearly equal products.
-    Three e1, e2;
-    for (std::size_t k = 0; k < 3; ++k) {
-      e1[k] = double{q.corners[1][k]} - double{q.corners[0][k]};
-      e2[k] = double{q.corners[2][k]} - double{q.corners[0][k]};
-    }
-    const double area = std::hypot(e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2],
-                                   e1[0] * e2[1] - e1[1] * e2[0]);
-    const double extent = std::max(greatest(e1), greatest(e2));
-    if (area == 0) continue;
-    normal.add(distance(f.normal, d.normal), extent * extent / area, where);
-    double height = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      height += (f.position[k] - d.position[k]) * d.normal[k];
-    // In half-ulps of the bound: 2^24 of them are all of it.
-    off_plane.add(std::fabs(height) / d.error, 0x1p24, where);
-  }
-  normal.expect_within(6);
-  off_plane.expect_within(1);
-}
-
-/// Moeller and Trumbore 1997, in double, over all triangles: nearest first.
-struct ExactHit {
-  double t = INFINITY, b1 = 0, b2 = 0, cosine = 0;
-  std::uint32_t id = 0xffffffffu;
-};
-ExactHit exact_hit(const rays::TestRay& ray, std::span<const rays::Corners> corners) {
-  ExactHit nearest;
-  const Vec3d o = to_double(ray.origin), d = to_double(ray.direction);
-  for (std::uint32_t id = 0; id < corners.size(); ++id) {
-    const Vec3d p0 = to_double(corners[id][0]);
-    const Vec3d e1 = to_double(corners[id][1]) - p0, e2 = to_double(corners[id][2]) - p0;
-    const Vec3d p = cross(d, e2);
-    const double determinant = dot(e1, p);
-    if (determinant == 0) continue;
-    const Vec3d s = o - p0;
-    const double b1 = dot(s, p) / determinant;
-    const Vec3d q = cross(s, e1);
-    const double b2 = dot(d, q) / determinant;
-    const double t = dot(e2, q) / determinant;
-    if (b1 < 0 || b2 < 0 || b1 + b2 > 1 || t <= 0 || t >= nearest.t) continue;
-    nearest = {t, b1, b2, std::fabs(determinant) / (length(cross(e1, e2)) * length(d)), id};
-  }
-  return nearest;
-}
-
-TEST(Precision, Intersection) {
-  // bvh.cl is OpenCL C only: the device's answers against an oracle of another method in double.
-  Stage t("intersection: distance"), weights("intersection: weights");
-  Numbers numbers(5);
-  int asked = 0, others = 0;
-  for (const float scale : {1e-6f, 1.0f, 1e6f}) {
-    std::vector<rays::Corners> corners;
-    const Mesh sphere = pictures::sphere({0.1f * scale, 0.2f * scale, 0}, scale, 16, false);
-    for (const auto& triangle : sphere.triangles)
-      corners.push_back({sphere.positions[triangle[0]], sphere.positions[triangle[1]],
-                         sphere.positions[triangle[2]]});
-    // A ground a thousand times as large, and needles.
-    for (const Mesh& mesh :
-         {pictures::quad({0, 0, -scale}, {1e3f * scale, 0, 0}, {0, 1e3f * scale, 0}),
-          pictures::box({}, {0.5f * scale, 1e-5f * scale, 0.2f * scale})})
-      for (const auto& triangle : mesh.triangles)
-        corners.push_back({mesh.positions[triangle[0]], mesh.positions[triangle[1]],
-                           mesh.positions[triangle[2]]});
-    std::vector<rays::TestRay> all;
-    for (int i = 0; i < 6000; ++i) {
-      rays::TestRay ray;
-      const auto from = numbers.direction(), to = numbers.direction();
-      const float far = scale * static_cast<float>(i % 3 == 0 ? 0.5 : i % 3 == 1 ? 3 : 100);
-      ray.origin = {from[0] * far, from[1] * far, from[2] * far};
-      const Vec3 aim = {to[0] * scale * 0.8f, to[1] * scale * 0.8f, to[2] * scale * 0.8f};
-      ray.direction = i % 2 == 0 ? aim - ray.origin : Vec3{to[0], to[1], to[2]};
-      all.push_back(ray);
-    }
-    const std::vector<rays::TestHit> hits = rays::Tree(corners).nearest(all);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      const ExactHit exact = exact_hit(all[i], corners);
-      ++asked;
-      if (exact.id != hits[i].id) {
-        ++others;  // through an edge, or two surfaces as near
-        continue;
-      }
-      if (!hits[i].met()) continue;
-      const rays::Corners& c = corners[exact.id];
-      const Vec3d o = to_double(all[i].origin);
-      double farthest = 0;
-      for (const Vec3& corner : c)
-        farthest = std::max(farthest, length(to_double(corner) - o));
-      // Corners are misplaced by half-ulps of their distance from the ray's start; seen along a
-      // ray that grazes, that is so much farther; and weights are that over the triangle's height
-      // as the ray sees it.
-      const double path = exact.t * length(to_double(all[i].direction));
-      const Vec3d e1 = to_double(c[1]) - to_double(c[0]), e2 = to_double(c[2]) - to_double(c[0]);
-      const double longest = std::max({length(e1), length(e2), length(e1 - e2)});
-      const double height = length(cross(e1, e2)) / longest;
-      const std::string where = fmt::format("scale {:g}, triangle {}", scale, exact.id);
-      t.add(relative(double{hits[i].t}, exact.t), 1 + farthest / (path * exact.cosine), where);
-      weights.add(std::max(std::fabs(double{hits[i].b1} - exact.b1),
-                           std::fabs(double{hits[i].b2} - exact.b2)),
-                  1 + farthest / (height * exact.cosine), where);
-    }
-  }
-  t.expect_within(4);
-  weights.expect_within(2);
-  EXPECT_LT(others, asked / 500);
 }
 
 TEST(Precision, Sum) {

@@ -62,6 +62,17 @@ struct SkyQuestion {
   unsigned x = 0, y = 0, sample = 0;
 };
 
+/// A ray and a triangle that it hits.
+struct HitQuestion {
+  std::array<std::array<float, 3>, 3> corners{};
+  std::array<float, 3> origin{}, direction{};
+};
+struct HitAnswer {
+  double b1 = 0, b2 = 0;
+  Three position{};
+  double error = 0;  ///< as SurfaceAnswer's
+};
+
 struct SurfaceQuestion {
   std::array<std::array<float, 3>, 3> corners{};
   float b1 = 0, b2 = 0;
@@ -75,6 +86,7 @@ namespace in_float {
 BsdfAnswer ask(const BsdfQuestion& question);
 LightAnswer ask(const LightQuestion& question);
 CameraAnswer ask(const CameraQuestion& question);
+HitAnswer ask(const HitQuestion& question);
 SurfaceAnswer ask(const SurfaceQuestion& question);
 Three ask(const SkyQuestion& question);
 }  // namespace in_float
@@ -83,6 +95,7 @@ namespace in_double {
 BsdfAnswer ask(const BsdfQuestion& question);
 LightAnswer ask(const LightQuestion& question);
 CameraAnswer ask(const CameraQuestion& question);
+HitAnswer ask(const HitQuestion& question);
 SurfaceAnswer ask(const SurfaceQuestion& question);
 Three ask(const SkyQuestion& question);
 }  // namespace in_double

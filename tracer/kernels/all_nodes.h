@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every material, texture and light, the camera and surface points as C++ functions, one lane wide,
-// in namespace ds::kernels. For the host's tables, for packing, and for tests against closed forms.
+// Every material, texture and light, the camera, weights of hits and surface points as C++
+// functions, one lane wide, in namespace ds::kernels. For the host's tables, for packing, and for
+// tests against closed forms.
 #pragma once
 
 #include "tracer/kernels/layout.h"
@@ -32,6 +33,7 @@ namespace ds::DS_KERNELS {
 #include "tracer/kernels/materials/metal2.h"
 #include "tracer/kernels/materials/mirror.h"
 #include "tracer/kernels/materials/mix.h"
+#include "tracer/kernels/shear.h"
 #include "tracer/kernels/surface.h"
 #include "tracer/kernels/textures/add.h"
 #include "tracer/kernels/textures/checkerboard3d.h"
