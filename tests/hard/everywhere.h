@@ -18,8 +18,7 @@ struct Way {
   std::string name() const;
 };
 
-/// All four strict ones, whose bits are compared, and two fast ones: every pair of choices is among
-/// them.
+/// All eight.
 std::vector<Way> ways();
 
 /// Traces on a tracer that the process keeps for each way.
