@@ -2,6 +2,7 @@
 #include "tracer/render/film.h"
 
 #include "tracer/base/error.h"
+#include "tracer/base/parallel.h"
 #include "tracer/kernels/layout.h"
 #include "tracer/render/film_error.h"
 #include "tracer/render/pixel_filter.h"
@@ -86,17 +87,22 @@ Film film_of(const FilmSums& sums, const PixelFilter& filter) {
   Film film;
   film.width = sums.width;
   film.height = sums.height;
-  film.rgb.reserve(sums.pixels() * 3);
   const auto [least, most] = std::minmax_element(sums.tile_spp.begin(), sums.tile_spp.end());
   DS_ASSERT(*least > 0);
-  if (*least > 1) film.halves.reserve(sums.pixels() * 3);
+  film.rgb.resize(sums.pixels() * 3);
+  if (*least > 1) film.halves.resize(sums.pixels() * 3);
   const auto w = static_cast<std::size_t>(sums.width), h = static_cast<std::size_t>(sums.height);
   constexpr std::size_t band = 16;  // rows at a time
-  for (std::size_t y = 0; y < h; y += band)
-    for (const PixelEstimate& pixel : filtered(sums, filter, {0, y, w, std::min(y + band, h)})) {
-      film.rgb.insert(film.rgb.end(), pixel.mean.begin(), pixel.mean.end());
-      if (*least > 1) film.halves.insert(film.halves.end(), pixel.half.begin(), pixel.half.end());
+  parallel_ranges((h + band - 1) / band, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin * band; y < std::min(end * band, h); y += band) {
+      std::size_t at = y * w * 3;
+      for (const PixelEstimate& pixel : filtered(sums, filter, {0, y, w, std::min(y + band, h)})) {
+        std::copy(pixel.mean.begin(), pixel.mean.end(), film.rgb.data() + at);
+        if (*least > 1) std::copy(pixel.half.begin(), pixel.half.end(), film.halves.data() + at);
+        at += 3;
+      }
     }
+  });
   FilmFacts& facts = film.facts;
   facts.samples = sums.samples();
   facts.least_spp = *least;

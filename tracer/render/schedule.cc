@@ -2,9 +2,11 @@
 #include "tracer/render/schedule.h"
 
 #include "tracer/base/error.h"
+#include "tracer/base/parallel.h"
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <utility>
 
 namespace ds {
@@ -96,13 +98,25 @@ Schedule::Schedule(const ErrorTarget& target, const FilmSums& film, const PixelF
   if (film.samples() == 0) return;
   DS_ASSERT(state_.tone_scale.has_value());
   curve_.emplace(target.tone_map, *state_.tone_scale);
-  for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
-    measure(tile);
-    measure_own(tile);
-  }
+  std::vector<std::size_t> all(tiles_.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  measure(all, all);
 }
 
-void Schedule::measure(std::size_t number) {
+void Schedule::measure(const std::vector<std::size_t>& stepped,
+                       const std::vector<std::size_t>& stale) {
+  constexpr std::size_t least = 8;  // tiles a thread, some 100 microseconds
+  parallel_ranges(stepped.size(), least, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      measure_own(stepped[i]);
+  });
+  parallel_ranges(stale.size(), least, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      measure_error(stale[i]);
+  });
+}
+
+void Schedule::measure_error(std::size_t number) {
   Tile& tile = tiles_[number];
   tile.error = {};
   tile.developed = 0;
@@ -188,18 +202,20 @@ void Schedule::traced(const std::vector<TileStep>& steps) {
     state_.tone_scale = tone_map_scale(film_of(film_, filter_), target_.tone_map);
     curve_.emplace(target_.tone_map, *state_.tone_scale);
   }
-  std::vector<bool> stale(tiles_.size(), false);
+  std::vector<bool> is_stale(tiles_.size(), false);
+  std::vector<std::size_t> stepped, stale;
   const std::size_t reach = (filter_.reach() + k_tile_size - 1) / k_tile_size;
   const std::size_t columns = film_.tiles_x(), rows = film_.tiles_y();
   for (const TileStep& step : steps) {
-    measure_own(step.tile);
+    stepped.push_back(step.tile);
     const std::size_t x = step.tile % columns, y = step.tile / columns;
     for (std::size_t v = y - std::min(y, reach); v < std::min(y + reach + 1, rows); ++v)
       for (std::size_t u = x - std::min(x, reach); u < std::min(x + reach + 1, columns); ++u)
-        stale[v * columns + u] = true;
+        is_stale[v * columns + u] = true;
   }
   for (std::size_t tile = 0; tile < tiles_.size(); ++tile)
-    if (stale[tile]) measure(tile);
+    if (is_stale[tile]) stale.push_back(tile);
+  measure(stepped, stale);
 }
 
 ErrorEstimate Schedule::error() const {

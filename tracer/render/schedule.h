@@ -75,7 +75,9 @@ class Schedule {
     double own = 0;          ///< sum of d^2 of the pixels' own means, each times its weight
     double weight = 0;       ///< sum of the pixels' weights
   };
-  void measure(std::size_t tile);
+  /// `stepped`: tiles with new samples; `stale`: those whose pixels' filters reach into one.
+  void measure(const std::vector<std::size_t>& stepped, const std::vector<std::size_t>& stale);
+  void measure_error(std::size_t tile);
   void measure_own(std::size_t tile);
   double sample_variance(std::size_t tile) const;
   double gain(std::size_t tile) const;

@@ -217,13 +217,41 @@ class Tracer::Picture {
   void add(std::span<const TileStep> steps, const std::function<void(std::uint64_t)>& progress);
 
  private:
+  struct Launch {
+    std::size_t items = 0;
+    std::uint64_t samples = 0;
+  };
+  Launch next_launch(std::span<const std::uint32_t> words, std::size_t begin,
+                     std::size_t items) const;
+
   State& s_;
   FilmSums film_;
   const std::atomic<bool>* stop_;
   Buffer view_, sums_;
   unsigned steps_argument_ = 0;
   bool lit_ = true;
+  double samples_a_second_ = 0;  ///< of the last launch
 };
+
+/// Work-items from `begin` on that take about half a second, or some for each processor where
+/// nothing is known of their time yet.
+Tracer::Picture::Launch Tracer::Picture::next_launch(std::span<const std::uint32_t> words,
+                                                     std::size_t begin, std::size_t items) const {
+  const auto lanes = static_cast<std::size_t>(s_.lanes);
+  const std::size_t least =
+      s_.local_size * std::max<std::size_t>(s_.device.info().compute_units, 1) * 8;
+  Launch launch;
+  while (begin + launch.items < items &&
+         (launch.items < least || static_cast<double>(launch.samples) < 0.5 * samples_a_second_)) {
+    for (std::size_t i = 0; i < s_.local_size; ++i, ++launch.items) {
+      const std::size_t at =
+          (begin + launch.items) * lanes / kernels::k_tile_pixels * kernels::k_step_words;
+      launch.samples +=
+          lanes * (words[at + kernels::k_step_end] - words[at + kernels::k_step_begin]);
+    }
+  }
+  return launch;
+}
 
 void Tracer::Picture::add(std::span<const TileStep> steps,
                           const std::function<void(std::uint64_t)>& progress) {
@@ -232,26 +260,21 @@ void Tracer::Picture::add(std::span<const TileStep> steps,
   constexpr std::size_t tile_pixels = std::size_t{k_tile_size} * k_tile_size;
   const std::size_t items = round_up(steps.size() * tile_pixels / lanes, s_.local_size);
   const std::size_t entries = round_up(items * lanes, tile_pixels) / tile_pixels;
-  const Buffer words = s_.device.upload(step_words(film_, steps, entries));
-  s_.path_kernel.set(steps_argument_, words);
+  const std::vector<std::uint32_t> words = step_words(film_, steps, entries);
+  const Buffer device_words = s_.device.upload(words);
+  s_.path_kernel.set(steps_argument_, device_words);
   s_.start_counting(steps_argument_ + 2, items);
   std::uint64_t samples = 0;
   for (const TileStep& step : steps)
     samples += std::uint64_t{step.end - film_.tile_spp[step.tile]} * film_.tile_pixels(step.tile);
-  const std::size_t least =
-      std::min(items, s_.local_size * std::max<std::size_t>(s_.device.info().compute_units, 1) * 8);
-  std::size_t launch = round_up(least, s_.local_size);
   for (std::size_t begin = 0; begin < items;) {
     if (stop_ != nullptr && stop_->load()) fail(ErrorKind::cancelled, "stopped");
-    const std::size_t count = std::min(launch, items - begin);
+    const Launch launch = next_launch(words, begin, items);
     const auto before = Clock::now();
-    if (lit_) s_.device.run(s_.path_kernel, begin, count, s_.local_size);
-    const double seconds = std::chrono::duration<double>(Clock::now() - before).count();
-    begin += count;
-    launch =
-        round_up(static_cast<std::size_t>(std::clamp(double(count) * 0.5 / std::max(seconds, 1e-4),
-                                                     double(least), double(items))),
-                 s_.local_size);
+    if (lit_) s_.device.run(s_.path_kernel, begin, launch.items, s_.local_size);
+    const std::chrono::duration<double> seconds = Clock::now() - before;
+    samples_a_second_ = static_cast<double>(launch.samples) / std::max(seconds.count(), 1e-4);
+    begin += launch.items;
     progress(samples * begin / items);
   }
   s_.add_counts();
