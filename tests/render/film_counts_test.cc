@@ -27,17 +27,20 @@ constexpr const char* k_add_given = R"cl(
 __kernel void add_given(const __global float* restrict samples, const __global uint* restrict words,
                         const __global ViewData* restrict view_data, __global float* restrict film) {
   const ViewData view = *view_data;
-  const uint first = (uint)get_global_id(0) * (uint)DS_LANES;
-  const Pixels pixels =
-      pixels_of(first / (uint)k_tile_pixels, first % (uint)k_tile_pixels, &view);
+  const uint count = words[0];
+  PixelQueue queue = pixel_queue(words + 1, (uint)get_global_id(0));
+  Pixels pixels;
   Sums sums;
-  load_sums(&sums, film, first / (uint)k_tile_pixels, first % (uint)k_tile_pixels, &view);
-  for (uint i = 0u; i < words[0]; ++i) {
-    const real3 radiance =
-        vec((real)(samples[3u * i]), (real)(samples[3u * i + 1u]), (real)(samples[3u * i + 2u]));
-    add_samples(&sums, pixels.inside, (natural)(i), (natural)(2u), radiance);
+  clear_sums(&sums, film, &view);
+  mask busy = change_pixels(&pixels, &sums, &queue, &view, (mask)(-1));
+  while (any_lane(busy)) {
+    for (uint i = 0u; i < count; ++i) {
+      const real3 radiance =
+          vec((real)(samples[3u * i]), (real)(samples[3u * i + 1u]), (real)(samples[3u * i + 2u]));
+      add_samples(&sums, busy, (natural)(i), (natural)(2u), radiance);
+    }
+    busy = change_pixels(&pixels, &sums, &queue, &view, busy);
   }
-  store_sums(&sums);
 }
 )cl";
 
@@ -61,11 +64,14 @@ Film film_of_samples(const std::vector<Vec3>& samples, MathMode math, int lanes,
   Kernel kernel = device.kernel(program, "add_given");
   const Buffer film = device.upload(sums.planes);
   kernel.set(0, device.upload(given));
-  kernel.set(1,
-             device.upload(std::vector<std::uint32_t>{static_cast<std::uint32_t>(samples.size())}));
+  // Four tiles, two a work-item.
+  const auto count = static_cast<std::uint32_t>(samples.size());
+  kernel.set(1, device.upload(std::vector<std::uint32_t>{count, 32, 4,              //
+                                                         0, 0, count, 1, 0, count,  //
+                                                         2, 0, count, 3, 0, count}));
   kernel.set(2, device.upload(std::as_bytes(std::span(&view, 1))));
   kernel.set(3, film);
-  device.run(kernel, 0, static_cast<std::size_t>(64 / lanes), 1);
+  device.run(kernel, 0, 2, 1);
   device.read(film, std::as_writable_bytes(std::span(sums.planes)));
   std::fill(sums.tile_spp.begin(), sums.tile_spp.end(), static_cast<std::uint32_t>(samples.size()));
   return film_of(sums, PixelFilter(0));

@@ -4,7 +4,8 @@
 // environment says:
 //
 //   picture_bits [--device NAME] [--lanes N] [--work-group N] [--full] [--high-bvh]
-//                [--bvh-width N] [--programs DIR] [--size WxH] [--spp N] [--picture NAME]...
+//                [--bvh-width N] [--item-pixels N] [--programs DIR] [--size WxH] [--spp N]
+//                [--picture NAME]...
 //
 // Output: golden_bits.txt's lines (bits.h), then "device NAME".
 #include "tests/render/bits.h"
@@ -38,6 +39,8 @@ pictures::BitsRequest parse(int count, char** arguments) {
       request.tracer.full_program = true;
     } else if (option == "--high-bvh") {
       request.tracer.high_quality_bvh = true;
+    } else if (option == "--item-pixels") {
+      request.tracer.item_pixels = number(value());
     } else if (option == "--bvh-width") {
       request.tracer.bvh_width = number(value());
     } else if (option == "--device") {

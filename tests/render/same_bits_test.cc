@@ -44,6 +44,17 @@ TEST_P(WorkGroups, DoNotChangeABit) {
 }
 INSTANTIATE_TEST_SUITE_P(SameBits, WorkGroups, testing::Values(1, 3, 64));
 
+class ItemPixels : public testing::TestWithParam<int> {};
+TEST_P(ItemPixels, DoNotChangeABit) {
+  for (const int lanes : {1, 16})
+    expect_same_bits([&](TracerOptions& o) {
+      o.lanes = lanes;
+      o.item_pixels = GetParam();
+    });
+}
+// Less than a tile and no divisor of one, more than a tile, more than a picture.
+INSTANTIATE_TEST_SUITE_P(SameBits, ItemPixels, testing::Values(5, 80, 100000));
+
 TEST(SameBits, BvhQualityDoesNotChangeABit) {
   expect_same_bits([](TracerOptions& o) { o.high_quality_bvh = true; });
 }

@@ -5,46 +5,107 @@
 #include "tracer/kernels/math.h"
 #include "tracer/kernels/types.h"
 
+/// The pixels that a work-item's lanes are at, one a lane.
 typedef struct {
-  natural index;  ///< y * width + x; 0 where outside
-  real x, y;      ///< of the pixel's centre
-  mask inside;
+  natural index;       ///< y * width + x
+  real x, y;           ///< of the pixel's centre
+  natural begin, end;  ///< its first sample to trace, and the one behind the last
 } Pixels;
 
-/// Pixels of a work-item in its tile, row by row: lanes look at neighbouring things. `first`: place
-/// in the tile of lane 0's pixel.
-DS_FN Pixels pixels_of(uint tile, uint first, const ViewData* view) {
-  const natural i = first + DS_LANE_NUMBERS;
-  const natural x = (tile % view->tiles_x) * (uint)k_tile_side + i % (uint)k_tile_side;
-  const natural y = (tile / view->tiles_x) * (uint)k_tile_side + i / (uint)k_tile_side;
-  Pixels p;
-  p.inside = (x < view->width) & (y < view->height);
-  p.index = choose_natural(p.inside, y * view->width + x, (natural)(0u));
-  p.x = to_real(x) + 0.5f;
-  p.y = to_real(y) + 0.5f;
-  return p;
+/// The pixels that a work-item has not begun yet, by their numbers among those of all steps' tiles,
+/// row by row: lanes look at neighbouring things.
+typedef struct {
+  const __global uint* steps;
+  uint next, end;
+} PixelQueue;
+
+DS_FN PixelQueue pixel_queue(const __global uint* launch, uint item) {
+  const uint share = launch[k_launch_share];
+  PixelQueue queue;
+  queue.steps = launch + k_launch_words;
+  queue.next = item * share;
+  queue.end = min(queue.next + share, launch[k_launch_steps] * (uint)k_tile_pixels);
+  return queue;
 }
 
-/// The pixels' running sums while this work-item works on them. The rare planes (from k_film_nan
-/// on) stay in the film.
+/// The running sums of the lanes' pixels. The rare planes (from k_film_nan on) stay in the film.
 enum { k_sums = k_film_nan };
+#define k_no_pixel (~(size_t)0)
 typedef struct {
-  real plane[k_sums];
-  __global float* film;  ///< plane 0 of lane 0's pixel
-  float limit;           ///< ViewData::sample_limit
+  float plane[k_sums][DS_LANES] __attribute__((aligned(64)));
+  size_t place[DS_LANES];  ///< of each lane's pixel in the film: plane 0; or k_no_pixel
+  __global float* film;
+  float limit;  ///< ViewData::sample_limit
 } Sums;
 
-DS_FN void load_sums(Sums* sums, __global float* film, uint tile, uint first,
-                     const ViewData* view) {
-  sums->film = film + (size_t)tile * (uint)(k_film_planes * k_tile_pixels) + first;
-  sums->limit = view->sample_limit;
-  for (int i = 0; i < k_sums; ++i)
-    sums->plane[i] = *(const __global real*)(sums->film + i * k_tile_pixels);
+DS_FN real* sum_of(Sums* sums, uint plane) {
+  return (real*)sums->plane[plane];
 }
 
-DS_FN void store_sums(const Sums* sums) {
+DS_FN void clear_sums(Sums* sums, __global float* film, const ViewData* view) {
+  sums->film = film;
+  sums->limit = view->sample_limit;
   for (int i = 0; i < k_sums; ++i)
-    *(__global real*)(sums->film + i * k_tile_pixels) = sums->plane[i];
+    *sum_of(sums, (uint)i) = (real)(0.0f);
+  for (int lane = 0; lane < DS_LANES; ++lane)
+    sums->place[lane] = k_no_pixel;
+}
+
+/// Writes a lane's sums to the film and reads those of its next pixel, either where there is one.
+DS_FN void change_sums(Sums* sums, int lane, size_t next) {
+  const size_t last = sums->place[lane];
+  for (int i = 0; i < k_sums; ++i) {
+    if (last != k_no_pixel) sums->film[last + (uint)(i * k_tile_pixels)] = sums->plane[i][lane];
+    if (next != k_no_pixel) sums->plane[i][lane] = sums->film[next + (uint)(i * k_tile_pixels)];
+  }
+  sums->place[lane] = next;
+}
+
+/// Puts the pixels of the lanes in `finished` away and gives each of these the queue's next one in
+/// the picture; returns those that got one. Pixels are many, so lanes stay busy though some pixels
+/// take longer, and a pixel is one lane's.
+DS_FN mask change_pixels(Pixels* pixels, Sums* sums, PixelQueue* queue, const ViewData* view,
+                         mask finished) {
+  uint index[DS_LANES] __attribute__((aligned(64)));
+  uint begin[DS_LANES] __attribute__((aligned(64)));
+  uint end[DS_LANES] __attribute__((aligned(64)));
+  float xs[DS_LANES] __attribute__((aligned(64)));
+  float ys[DS_LANES] __attribute__((aligned(64)));
+  int wanted[DS_LANES] __attribute__((aligned(64)));
+  *(natural*)index = pixels->index;
+  *(natural*)begin = pixels->begin;
+  *(natural*)end = pixels->end;
+  *(real*)xs = pixels->x;
+  *(real*)ys = pixels->y;
+  *(mask*)wanted = finished;
+  for (int lane = 0; lane < DS_LANES; ++lane) {
+    if (!wanted[lane]) continue;
+    wanted[lane] = 0;
+    size_t place = k_no_pixel;
+    while (place == k_no_pixel && queue->next < queue->end) {
+      const uint number = queue->next++;
+      const __global uint* step = queue->steps + number / (uint)k_tile_pixels * (uint)k_step_words;
+      const uint tile = step[k_step_tile];
+      const uint i = number % (uint)k_tile_pixels;
+      const uint x = tile % view->tiles_x * (uint)k_tile_side + i % (uint)k_tile_side;
+      const uint y = tile / view->tiles_x * (uint)k_tile_side + i / (uint)k_tile_side;
+      if (x >= view->width || y >= view->height) continue;
+      place = (size_t)tile * (uint)(k_film_planes * k_tile_pixels) + i;
+      index[lane] = y * view->width + x;
+      xs[lane] = (float)x + 0.5f;
+      ys[lane] = (float)y + 0.5f;
+      begin[lane] = step[k_step_begin];
+      end[lane] = step[k_step_end];
+      wanted[lane] = -1;
+    }
+    change_sums(sums, lane, place);
+  }
+  pixels->index = *(natural*)index;
+  pixels->begin = *(natural*)begin;
+  pixels->end = *(natural*)end;
+  pixels->x = *(real*)xs;
+  pixels->y = *(real*)ys;
+  return *(mask*)wanted != 0;
 }
 
 /// Counts the samples of `odd` by what is wrong with them and scales outliers down; returns the
@@ -69,13 +130,14 @@ DS_FN mask tame_samples(const Sums* sums, real3* radiance, mask odd) {
                       : greatest > as_uint(k_sample_most) ? k_film_infinite
                       : negative                          ? k_film_negative
                                                           : k_film_outliers;
-    sums->film[kind * (uint)k_tile_pixels + (uint)lane] += 1.0f;
+    sums->film[sums->place[lane] + kind * (uint)k_tile_pixels] += 1.0f;
     wanted[lane] = kind == k_film_outliers ? -1 : 0;
     if (kind != k_film_outliers) continue;
     const float factor = sums->limit / as_float(greatest);
     const float energy =
         0.2126f * sample[0][lane] + 0.7152f * sample[1][lane] + 0.0722f * sample[2][lane];
-    sums->film[k_film_removed * k_tile_pixels + lane] += energy * (1.0f - factor);
+    sums->film[sums->place[lane] + (uint)(k_film_removed * k_tile_pixels)] +=
+        energy * (1.0f - factor);
     for (int c = 0; c < 3; ++c)
       sample[c][lane] *= factor;
   }
@@ -102,18 +164,22 @@ DS_FN void add_samples(Sums* sums, mask done, natural number, natural quarter, r
   for (uint q = 0; q < 4u; ++q) {
     const mask here = done & (quarter == q);
     if (!any_lane(here)) continue;
-    real* plane = sums->plane + q * (uint)k_film_quarter;
-    for (int c = 0; c < 3; ++c) {
+    const uint first = q * (uint)k_film_quarter;
+    for (uint c = 0; c < 3u; ++c) {
       const real x = choose(good & here, sample[c], (real)(0.0f));
+      real* sum = sum_of(sums, first + (uint)k_film_sum + c);
 #ifdef DS_PLAIN_SUMS  // only to tell what compensating costs
-      plane[k_film_sum + c] = plane[k_film_sum + c] + x;
+      *sum = *sum + x;
 #else
-      add_compensated(&plane[k_film_sum + c], &plane[k_film_compensation + c], x);
+      add_compensated(sum, sum_of(sums, first + (uint)k_film_compensation + c), x);
 #endif
-      plane[k_film_halves + c] = plane[k_film_halves + c] + choose(even, x, -x);
+      real* halves = sum_of(sums, first + (uint)k_film_halves + c);
+      *halves = *halves + choose(even, x, -x);
     }
     const real one = choose(here, (real)(1.0f), (real)(0.0f));
-    plane[k_film_count] = plane[k_film_count] + one;
-    plane[k_film_count_halves] = plane[k_film_count_halves] + choose(even, one, -one);
+    real* count = sum_of(sums, first + (uint)k_film_count);
+    real* count_halves = sum_of(sums, first + (uint)k_film_count_halves);
+    *count = *count + one;
+    *count_halves = *count_halves + choose(even, one, -one);
   }
 }

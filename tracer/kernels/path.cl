@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The path tracer: unidirectional, next-event estimation, multiple importance sampling, Russian
-// roulette. One work-item owns DS_LANES pixels. A lane whose path has ended starts its pixel's next
-// sample at once, so lanes stay busy; a pixel's samples are added in order, so the picture does not
+// roulette. A work-item has a queue of pixels and traces DS_LANES of them at a time. A lane whose
+// path has ended starts its pixel's next sample at once, and after the last takes the next pixel,
+// so lanes stay busy; a pixel's samples are added in order by one lane, so the picture does not
 // depend on how pixels are dealt out.
 #include "tracer/kernels/batch.cl"
 #include "tracer/kernels/camera.h"
@@ -393,29 +394,30 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
   return ends;
 }
 
-/// Adds samples begin .. end - 1 to the pixels of a tile from its place `first` on, one a lane.
-DS_OUT_OF_LINE void trace_pixels(uint tile, uint first, uint begin, uint end,
-                                 const __global SceneData* restrict scene_data,
+/// Traces the queue's pixels.
+DS_OUT_OF_LINE void trace_pixels(PixelQueue* queue, const __global SceneData* restrict scene_data,
                                  const __global ViewData* restrict view_data, const SceneTables* t,
                                  __global float* restrict film DS_RAY_COUNTS_ARGUMENT) {
   const SceneData scene = *scene_data;
   const ViewData view = *view_data;
-  const Pixels pixels = pixels_of(tile, first, &view);
+  Pixels pixels;
+  pixels.index = pixels.begin = pixels.end = (natural)(0u);
+  pixels.x = pixels.y = (real)(0.0f);
   Sums sums;
-  load_sums(&sums, film, tile, first, &view);
+  clear_sums(&sums, film, &view);
   Paths paths;
   DS_CLEAR_RAY_COUNTS(paths);
   paths.alive = paths.closes = paths.shadow.wanted = (mask)(0);
   paths.shadow.origin = paths.shadow.direction = splat((real)(0.0f));
   paths.shadow.t_max = (real)(0.0f);
   paths.direct = paths.closing = splat((real)(0.0f));
-  paths.sample = (natural)(begin);
   paths.quarter = paths.closing_quarter = (natural)(0u);
-  start_paths(&paths, pixels.inside, &pixels, &view);
-  while (any_lane(paths.alive | paths.closes)) {
+  mask busy = change_pixels(&pixels, &sums, queue, &view, (mask)(-1));
+  paths.sample = pixels.begin;
+  start_paths(&paths, busy, &pixels, &view);
+  while (any_lane(busy)) {
     const StepEnds ends = advance(&paths, &sums, &pixels, &scene, &view, t);
     const mask over = ends.done | ends.closes;
-    if (!any_lane(over)) continue;
     if (any_lane(ends.done))
       add_samples(&sums, ends.done, paths.sample, paths.quarter, paths.radiance);
     paths.closing = choose(ends.closes, paths.radiance, paths.closing);
@@ -423,10 +425,17 @@ DS_OUT_OF_LINE void trace_pixels(uint tile, uint first, uint begin, uint end,
     paths.closes = ends.closes;
     paths.alive = paths.alive & !over;
     paths.sample += choose_natural(over, (natural)(1u), (natural)(0u));
-    const mask start = over & (paths.sample < end);
+    mask start = over & (paths.sample < pixels.end);
+    // A pixel whose last sample waits for its shadow ray keeps its lane for one more step.
+    const mask finished = busy & !(paths.alive | paths.closes | start);
+    if (any_lane(finished)) {
+      const mask changed = change_pixels(&pixels, &sums, queue, &view, finished);
+      paths.sample = choose_natural(changed, pixels.begin, paths.sample);
+      start = start | changed;
+      busy = (busy & !finished) | changed;
+    }
     if (any_lane(start)) start_paths(&paths, start, &pixels, &view);
   }
-  store_sums(&sums);
   DS_STORE_RAY_COUNTS(paths);
 }
 
@@ -435,14 +444,10 @@ __kernel void trace_paths(
     const __global float* restrict triangles, const __global float* restrict materials,
     const __global float* restrict programs, const __global float* restrict lights,
     const __global float* restrict tables, const __global SceneData* restrict scene_data,
-    const __global ViewData* restrict view_data, const __global uint* restrict steps,
+    const __global ViewData* restrict view_data, const __global uint* restrict launch,
     __global float* restrict film DS_RAY_COUNTS_ARGUMENT) {
-  const uint item = (uint)get_global_id(0);
-  const __global uint* step =
-      steps + item * (uint)DS_LANES / (uint)k_tile_pixels * (uint)k_step_words;
-  const uint begin = step[k_step_begin];
-  const uint end = step[k_step_end];
-  if (begin >= end) return;
+  PixelQueue queue = pixel_queue(launch, (uint)get_global_id(0));
+  if (queue.next >= queue.end) return;
   SceneTables t;
   t.nodes = nodes;
   t.leaves = leaves;
@@ -454,6 +459,5 @@ __kernel void trace_paths(
   t.lights.lights = lights;
   t.lights.tables = tables;
   t.lights.triangles = triangles;
-  trace_pixels(step[k_step_tile], item * (uint)DS_LANES % (uint)k_tile_pixels, begin, end,
-               scene_data, view_data, &t, film DS_RAY_COUNTS_PASSED);
+  trace_pixels(&queue, scene_data, view_data, &t, film DS_RAY_COUNTS_PASSED);
 }

@@ -112,6 +112,8 @@ enum {
   k_film_planes,
 };
 
-/// What a launch traces: for each tile its number, row by row, and the numbers of its
-/// pixels' first sample and the one behind the last. An entry with no samples does nothing.
+/// What a launch traces: how many pixels a work-item takes, and how many steps follow; then for
+/// each step its tile's number, row by row, and the numbers of the first sample of the tile's
+/// pixels and of the one behind the last.
+enum { k_launch_share = 0, k_launch_steps = 1, k_launch_words = 2 };
 enum { k_step_tile = 0, k_step_begin = 1, k_step_end = 2, k_step_words = 3 };

@@ -45,16 +45,15 @@ std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
 }
 
-/// What the kernel reads of the steps, filled up with entries that do nothing to a whole number of
-/// work-groups.
-std::vector<std::uint32_t> step_words(const FilmSums& film, std::span<const TileStep> steps,
-                                      std::size_t entries) {
-  std::vector<std::uint32_t> words(entries * kernels::k_step_words, 0);
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    const std::size_t at = i * kernels::k_step_words;
-    words[at + kernels::k_step_tile] = static_cast<std::uint32_t>(steps[i].tile);
-    words[at + kernels::k_step_begin] = film.tile_spp[steps[i].tile];
-    words[at + kernels::k_step_end] = steps[i].end;
+/// What the kernel reads of a launch (kernels/types.h).
+std::vector<std::uint32_t> launch_words(const FilmSums& film, std::span<const TileStep> steps,
+                                        std::size_t share) {
+  std::vector<std::uint32_t> words{static_cast<std::uint32_t>(share),
+                                   static_cast<std::uint32_t>(steps.size())};
+  for (const TileStep& step : steps) {
+    words.push_back(static_cast<std::uint32_t>(step.tile));
+    words.push_back(film.tile_spp[step.tile]);
+    words.push_back(step.end);
   }
   return words;
 }
@@ -205,7 +204,7 @@ class Tracer::Picture {
     for (const Buffer* b : {&t.nodes, &t.leaves, &t.triangles, &t.materials, &t.programs, &t.lights,
                             &t.tables, &t.data, &v})
       s_.path_kernel.set(argument++, *b);
-    steps_argument_ = argument;
+    launch_argument_ = argument;
     s_.path_kernel.set(argument + 1, sums_);
     lit_ = s_.is_lit(camera);
   }
@@ -221,33 +220,46 @@ class Tracer::Picture {
     std::size_t items = 0;
     std::uint64_t samples = 0;
   };
-  Launch next_launch(std::span<const std::uint32_t> words, std::size_t begin,
+  std::size_t share_of(std::size_t tiles) const;
+  Launch next_launch(std::span<const TileStep> steps, std::size_t share, std::size_t begin,
                      std::size_t items) const;
 
   State& s_;
   FilmSums film_;
   const std::atomic<bool>* stop_;
   Buffer view_, sums_;
-  unsigned steps_argument_ = 0;
+  unsigned launch_argument_ = 0;
   bool lit_ = true;
   double samples_a_second_ = 0;  ///< of the last launch
 };
 
+/// How many pixels a work-item takes, if the options leave it open: on a CPU as many as leave eight
+/// work-items for each processor, up to eight tiles: lanes idle only when no pixel is left for
+/// them. A GPU has threads for all.
+std::size_t Tracer::Picture::share_of(std::size_t tiles) const {
+  if (s_.options.item_pixels > 0) return static_cast<std::size_t>(s_.options.item_pixels);
+  if (!s_.device.info().is_cpu) return static_cast<std::size_t>(s_.lanes);
+  const std::size_t items = 8 * std::max<std::size_t>(s_.device.info().compute_units, 1);
+  return std::clamp<std::size_t>(tiles / items, 1, 8) * kernels::k_tile_pixels;
+}
+
 /// Work-items from `begin` on that take about half a second, or some for each processor where
 /// nothing is known of their time yet.
-Tracer::Picture::Launch Tracer::Picture::next_launch(std::span<const std::uint32_t> words,
-                                                     std::size_t begin, std::size_t items) const {
-  const auto lanes = static_cast<std::size_t>(s_.lanes);
+Tracer::Picture::Launch Tracer::Picture::next_launch(std::span<const TileStep> steps,
+                                                     std::size_t share, std::size_t begin,
+                                                     std::size_t items) const {
   const std::size_t least =
       s_.local_size * std::max<std::size_t>(s_.device.info().compute_units, 1) * 8;
+  const double wanted = 0.5 * samples_a_second_;
   Launch launch;
   while (begin + launch.items < items &&
-         (launch.items < least || static_cast<double>(launch.samples) < 0.5 * samples_a_second_)) {
-    for (std::size_t i = 0; i < s_.local_size; ++i, ++launch.items) {
-      const std::size_t at =
-          (begin + launch.items) * lanes / kernels::k_tile_pixels * kernels::k_step_words;
-      launch.samples +=
-          lanes * (words[at + kernels::k_step_end] - words[at + kernels::k_step_begin]);
+         (launch.items < least || static_cast<double>(launch.samples) < wanted)) {
+    const std::size_t first = (begin + launch.items) * share;
+    launch.items += s_.local_size;
+    const std::size_t last = (begin + launch.items) * share;
+    for (std::size_t i = first; i < std::min(last, steps.size() * kernels::k_tile_pixels); ++i) {
+      const TileStep& step = steps[i / kernels::k_tile_pixels];
+      launch.samples += step.end - film_.tile_spp[step.tile];
     }
   }
   return launch;
@@ -256,20 +268,18 @@ Tracer::Picture::Launch Tracer::Picture::next_launch(std::span<const std::uint32
 void Tracer::Picture::add(std::span<const TileStep> steps,
                           const std::function<void(std::uint64_t)>& progress) {
   if (steps.empty()) return;
-  const auto lanes = static_cast<std::size_t>(s_.lanes);
-  constexpr std::size_t tile_pixels = std::size_t{k_tile_size} * k_tile_size;
-  const std::size_t items = round_up(steps.size() * tile_pixels / lanes, s_.local_size);
-  const std::size_t entries = round_up(items * lanes, tile_pixels) / tile_pixels;
-  const std::vector<std::uint32_t> words = step_words(film_, steps, entries);
-  const Buffer device_words = s_.device.upload(words);
-  s_.path_kernel.set(steps_argument_, device_words);
-  s_.start_counting(steps_argument_ + 2, items);
+  const std::size_t share = share_of(steps.size());
+  const std::size_t pixels = steps.size() * kernels::k_tile_pixels;
+  const std::size_t items = round_up((pixels + share - 1) / share, s_.local_size);
+  const Buffer words = s_.device.upload(launch_words(film_, steps, share));
+  s_.path_kernel.set(launch_argument_, words);
+  s_.start_counting(launch_argument_ + 2, items);
   std::uint64_t samples = 0;
   for (const TileStep& step : steps)
     samples += std::uint64_t{step.end - film_.tile_spp[step.tile]} * film_.tile_pixels(step.tile);
   for (std::size_t begin = 0; begin < items;) {
     if (stop_ != nullptr && stop_->load()) fail(ErrorKind::cancelled, "stopped");
-    const Launch launch = next_launch(words, begin, items);
+    const Launch launch = next_launch(steps, share, begin, items);
     const auto before = Clock::now();
     if (lit_) s_.device.run(s_.path_kernel, begin, launch.items, s_.local_size);
     const std::chrono::duration<double> seconds = Clock::now() - before;
