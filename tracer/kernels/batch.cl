@@ -14,6 +14,7 @@
 
 #include "tracer/kernels/bvh.cl"
 #include "tracer/kernels/sampler.h"
+#include "tracer/kernels/shear.h"
 
 /// Places of a batch: nearest-hit rays first, then any-hit rays, one a lane.
 enum { k_batch_any = DS_LANES, k_batch_rays = 2 * DS_LANES };
@@ -44,8 +45,6 @@ DS_FN mask traceable_lanes(const LaneRays* rays) {
 DS_FN real component(real3 v, int axis) {
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
-// Here and not on top: programs keep their text so, which is in the pictures' keys.
-#include "tracer/kernels/shear.h"
 
 #if DS_LANES == 1
 

@@ -220,7 +220,7 @@ class Tracer::Picture {
     std::size_t items = 0;
     std::uint64_t samples = 0;
   };
-  std::size_t share_of(std::size_t tiles) const;
+  std::size_t share_of(std::span<const TileStep> steps) const;
   Launch next_launch(std::span<const TileStep> steps, std::size_t share, std::size_t begin,
                      std::size_t items) const;
 
@@ -235,12 +235,19 @@ class Tracer::Picture {
 
 /// How many pixels a work-item takes, if the options leave it open: on a CPU as many as leave eight
 /// work-items for each processor, up to eight tiles: lanes idle only when no pixel is left for
-/// them. A GPU has threads for all.
-std::size_t Tracer::Picture::share_of(std::size_t tiles) const {
+/// them. Fewer where pixels have thousands of samples, which keep lanes busy by themselves: a
+/// launch is to end soon after it is to stop. A GPU has threads for all.
+std::size_t Tracer::Picture::share_of(std::span<const TileStep> steps) const {
   if (s_.options.item_pixels > 0) return static_cast<std::size_t>(s_.options.item_pixels);
   if (!s_.device.info().is_cpu) return static_cast<std::size_t>(s_.lanes);
+  constexpr std::size_t most_samples = 4096;  // of a pixel of each tile
+  std::size_t most_spp = 1;
+  for (const TileStep& step : steps)
+    most_spp = std::max<std::size_t>(most_spp, step.end - film_.tile_spp[step.tile]);
   const std::size_t items = 8 * std::max<std::size_t>(s_.device.info().compute_units, 1);
-  return std::clamp<std::size_t>(tiles / items, 1, 8) * kernels::k_tile_pixels;
+  const std::size_t tiles =
+      std::min({steps.size() / items, most_samples / most_spp, std::size_t{8}});
+  return std::max<std::size_t>(tiles, 1) * kernels::k_tile_pixels;
 }
 
 /// Work-items from `begin` on that take about half a second, or some for each processor where
@@ -268,7 +275,7 @@ Tracer::Picture::Launch Tracer::Picture::next_launch(std::span<const TileStep> s
 void Tracer::Picture::add(std::span<const TileStep> steps,
                           const std::function<void(std::uint64_t)>& progress) {
   if (steps.empty()) return;
-  const std::size_t share = share_of(steps.size());
+  const std::size_t share = share_of(steps);
   const std::size_t pixels = steps.size() * kernels::k_tile_pixels;
   const std::size_t items = round_up((pixels + share - 1) / share, s_.local_size);
   const Buffer words = s_.device.upload(launch_words(film_, steps, share));
