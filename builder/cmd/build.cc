@@ -62,7 +62,8 @@ void print_result(const BuildResult& result, const Dataset& dataset) {
                         static_cast<double>(result.traced_samples) * 1e-6, result.device);
   fmt::print("{}\n", text);
   print_capped(result, dataset.recipe);
-  fmt::print("pictures: {}\n", (dataset.folder / "images").string());
+  fmt::print("pictures: {}\nmanifest: {}\n", (dataset.folder / "images").string(),
+             (dataset.folder / "manifest" / "images.jsonl").string());
 }
 
 int dry_run(const Arguments& arguments, const Plan& plan) {

@@ -22,6 +22,7 @@ constexpr std::array<const char*, 5> k_names{"width", "height", "planes", "tone_
                                              "least_bound"};
 constexpr int k_most_pixels_a_side = 16384;
 constexpr std::size_t k_checksum_bytes = 16;
+constexpr float k_most_count = 0x1p24f;  // a float counts no further
 
 void put_u32(std::vector<std::byte>& to, std::uint32_t value) {
   for (int shift = 0; shift < 32; shift += 8)
@@ -198,11 +199,15 @@ FilmSums decode_film_sums(std::span<const std::byte> bytes, const std::string& n
     spp = values.u32();
   for (const int plane : planes) {
     std::uint32_t set = 0;
+    const bool is_count = plane >= kernels::k_film_nan && plane <= kernels::k_film_outliers;
     for (std::size_t tile = 0; tile < tiles; ++tile)
       for (float& value : film.row(tile, static_cast<std::size_t>(plane))) {
         const std::uint32_t bits = values.u32();
         set |= bits;
         value = std::bit_cast<float>(bits);
+        if (!std::isfinite(value)) reader.refuse("it holds a value that is not finite");
+        if (plane >= kernels::k_film_nan && value < 0) reader.refuse("it holds a count below 0");
+        if (is_count && value > k_most_count) reader.refuse("it holds a count that is too large");
       }
     if (set == 0) reader.refuse("it lists a plane that is all zero");
   }

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace ds {
 namespace {
@@ -115,6 +116,26 @@ TEST(FilmFile, RefusesWhatAnotherVersionWouldHaveWritten) {
               HasSubstr("hexadecimal float"));
   EXPECT_THAT(changed("tone_scale=0x", "tone_scale=zx"), HasSubstr("hexadecimal float"));
   EXPECT_THAT(changed("\n\n", "\nmore=1\n\n"), HasSubstr("its head is longer"));
+}
+
+/// Tracing on from any of these would spoil the picture, or count what no number holds.
+TEST(FilmFile, RefusesValuesThatNoSamplesAddUpTo) {
+  const auto written = [](std::size_t plane, float value) {
+    FilmSums film = some_film();
+    film.row(2, plane)[5] = value;
+    return refusal(encode_film_sums(film));
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const float value : {nan, infinity, -infinity}) {
+    EXPECT_THAT(written(kernels::k_film_sum, value), HasSubstr("a value that is not finite"));
+    EXPECT_THAT(written(kernels::k_film_removed, value), HasSubstr("a value that is not finite"));
+  }
+  EXPECT_EQ(written(kernels::k_film_halves, -3), "taken");
+  EXPECT_THAT(written(kernels::k_film_infinite, -1), HasSubstr("a count below 0"));
+  EXPECT_EQ(written(kernels::k_film_nan, 0x1p24f), "taken");
+  EXPECT_THAT(written(kernels::k_film_nan, 0x1p25f), HasSubstr("a count that is too large"));
+  EXPECT_EQ(written(kernels::k_film_removed, 0x1p25f), "taken");
 }
 
 /// What is read is written as the same bytes again.
