@@ -14,6 +14,28 @@ nlohmann::json interval_json(const Interval& interval) {
   return {{"value", interval.value}, {"low", interval.low}, {"high", interval.high}};
 }
 
+std::string samples_text(double spp) {
+  if (spp == 0) return "-";
+  return spp < 100 ? fmt::format("{:.1f}", spp) : fmt::format("{:.0f}", spp);
+}
+
+std::string error_text(const PairForecast& pair) {
+  if (pair.spp == 0) return "-";
+  return pair.error > 0 ? fmt::format("{:.2g} %", 100 * pair.error) : "?";
+}
+
+nlohmann::json to_json(const PairForecast& pair) {
+  nlohmann::json object{{"environment", pair.environment},
+                        {"material", pair.material},
+                        {"images", pair.images},
+                        {"made", pair.made},
+                        {"spp", pair.spp},
+                        {"error", nullptr},
+                        {"seconds_an_image", pair.seconds_an_image}};
+  if (pair.spp > 0) object["error"] = pair.error;
+  return object;
+}
+
 }  // namespace
 
 std::string time_text(const Interval& seconds) {
@@ -44,24 +66,17 @@ std::string pairs_text(const Forecast& forecast) {
       fmt::format("{:{}}  {:{}}  {:>9}  {:>8}  {:>8}  {:>10}\n", "environment", environment,
                   "material", material, "to make", "samples", "error", "s an image");
   for (const PairForecast& pair : forecast.pairs)
-    text += fmt::format(
-        "{:{}}  {:{}}  {:>9}  {:>8}  {:>8}  {:>10.3g}\n", pair.environment, environment,
-        pair.material, material, fmt::format("{}/{}", pair.made, pair.images),
-        pair.spp < 100 ? fmt::format("{:.1f}", pair.spp) : fmt::format("{:.0f}", pair.spp),
-        pair.error > 0 ? fmt::format("{:.2g} %", 100 * pair.error) : "?", pair.seconds_an_image);
+    text +=
+        fmt::format("{:{}}  {:{}}  {:>9}  {:>8}  {:>8}  {:>10.3g}\n", pair.environment, environment,
+                    pair.material, material, fmt::format("{}/{}", pair.made, pair.images),
+                    samples_text(pair.spp), error_text(pair), pair.seconds_an_image);
   return text;
 }
 
 nlohmann::json to_json(const Forecast& forecast) {
   nlohmann::json pairs = nlohmann::json::array();
   for (const PairForecast& pair : forecast.pairs)
-    pairs.push_back({{"environment", pair.environment},
-                     {"material", pair.material},
-                     {"images", pair.images},
-                     {"made", pair.made},
-                     {"spp", pair.spp},
-                     {"error", pair.error},
-                     {"seconds_an_image", pair.seconds_an_image}});
+    pairs.push_back(to_json(pair));
   return {{"seconds", interval_json(forecast.seconds)},
           {"bytes", interval_json(forecast.bytes)},
           {"bytes_by_kind", forecast.bytes_by_kind},

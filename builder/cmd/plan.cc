@@ -78,6 +78,8 @@ std::string percent(double share) {
 }
 
 Answer answer(const Wish& wish, const Recipe& recipe, const std::vector<ProbedWork>& work) {
+  if (!recipe.outputs.image)
+    return {"no samples, as outputs.image = false", {}, forecast(work, {std::nullopt, 0})};
   if (wish.budget_seconds) {
     const std::optional<Interval> error = error_for(work, *wish.budget_seconds);
     if (!error)
@@ -120,6 +122,10 @@ int run_plan(const Arguments& arguments) {
   const Wish wish = wish_of(arguments);
   RealDisk disk;
   Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
+  if (wish.all_images() && !dataset.recipe.outputs.image)
+    fail(ErrorKind::usage,
+         "{} is of pictures, and with outputs.image = false the recipe makes none; ask --time",
+         wish.error ? "--error" : "--budget");
   Inputs inputs(*dataset.database);
   const Plan plan = make_plan(dataset, inputs, wish.all_images());
   const PlanCounts counts = count(plan);

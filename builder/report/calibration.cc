@@ -157,6 +157,7 @@ Calibration calibrate(const Recipe& recipe, Inputs& inputs, Renderer& renderer,
                       const std::filesystem::path& scratch, const ProbeWatch& watch) {
   Calibration calibration;
   calibration.device = renderer.device();
+  const bool by_error = wish.by_error && recipe.outputs.image;
   const std::vector<PairImages> wanted = images_to_probe(expand(recipe));
   const std::map<std::string, Hash128> keys =
       probe_keys(recipe, inputs, wanted, calibration.device);
@@ -165,14 +166,14 @@ Calibration calibrate(const Recipe& recipe, Inputs& inputs, Renderer& renderer,
   for (const ImageSpec& image : by_turns(wanted)) {
     if (!keys.contains(image.id)) continue;
     const std::optional<Probe> known = wish.again ? std::nullopt : cache.find(keys.at(image.id));
-    if (known && (known->target || !wish.by_error))
+    if (known && (known->target || !by_error))
       probes[image.id] = *known;
     else
       missing.push_back(image);
   }
   const Scratch work(scratch);
   const std::vector<Probe> found =
-      probe_images(recipe, inputs, missing, renderer, work.folder(), wish.by_error, watch);
+      probe_images(recipe, inputs, missing, renderer, work.folder(), by_error, watch);
   for (std::size_t i = 0; i < missing.size(); ++i) {
     cache.put(keys.at(missing[i].id), found[i]);
     probes[missing[i].id] = found[i];

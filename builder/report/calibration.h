@@ -44,11 +44,12 @@ struct Calibration {
 /// What is to be measured.
 struct CalibrationWish {
   bool again = false;     ///< all anew, not from the cache
-  bool by_error = false;  ///< with a TargetProbe each
+  bool by_error = false;  ///< with a TargetProbe each, where the recipe makes pictures
 };
 
 /// Probes of the recipe's images, from the cache where they are there.
-/// Images that cannot be read are left out. Works in `scratch`, which is removed afterwards.
+/// Images that cannot be read are left out. Works in `scratch`, which is removed afterwards, what
+/// is thrown or not. Throws what making an image throws.
 Calibration calibrate(const Recipe& recipe, Inputs& inputs, Renderer& renderer,
                       const CalibrationCache& cache, const CalibrationWish& wish,
                       const std::filesystem::path& scratch, const ProbeWatch& watch);

@@ -54,6 +54,7 @@ double spp_of(const std::optional<ErrorLaw>& law, const Samples& samples) {
 /// compresses better, and each halving of the noise saves about as many bits. Never less than half
 /// of what was seen.
 double size_at(const ProbedSize& size, const Probe& probe, double spp) {
+  if (size.low == size.high) return size.high;  // no samples are in it, as in a mask
   const double doublings = std::log2(double(probe.high_spp) / probe.low_spp);
   const double trend = (size.high - size.low) / doublings;
   const double at = size.high + trend * std::log2(spp / probe.high_spp);

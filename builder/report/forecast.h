@@ -29,7 +29,7 @@ std::vector<PairWork> work_of(const Plan& plan, bool keep_film);
 /// How many samples the images get.
 struct Samples {
   std::optional<double> error;  ///< as many as engine.error takes to this one, image by image
-  int spp = 1;                  ///< without: this number for all
+  int spp = 1;                  ///< without: this number for all; 0 where there is no picture
   double most_spp = 1 << 24;    ///< engine.max_spp
 };
 
@@ -37,7 +37,7 @@ struct Samples {
 struct PairForecast {
   std::string environment, material;
   std::uint64_t images = 0, made = 0;
-  double spp = 0;               ///< mean
+  double spp = 0;               ///< mean; 0 where there is no picture
   double error = 0;             ///< RMS relative error (by error: the developed picture's, upper
                                 ///< end); 0 where no probe could tell
   double seconds_an_image = 0;  ///< mean, without its scene

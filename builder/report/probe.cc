@@ -56,18 +56,18 @@ class ProbeBuild {
     return watch.now() - start;
   }
 
-  /// The picture that was made.
+  /// The picture that was made. Only where the recipe makes any.
   Product picture(const std::string& id) {
     for (const OutputFile& output : image(id).keys.outputs)
       if (output.kind == "image") return product(output.key);
-    assertion_failed("every image has a picture", __FILE__, __LINE__);
+    assertion_failed("the recipe makes pictures", __FILE__, __LINE__);
   }
 
   std::map<std::string, double> bytes(const std::string& id) {
     std::map<std::string, double> sizes;
     for (const OutputFile& output : image(id).keys.outputs)
       sizes[output.kind] = static_cast<double>(product(output.key).size_bytes);
-    if (dataset_.recipe.keep_film)
+    if (dataset_.recipe.keep_film && dataset_.recipe.outputs.image)
       sizes["film"] = static_cast<double>(product(image(id).keys.render).size_bytes);
     return sizes;
   }
@@ -117,12 +117,14 @@ class Probing {
  public:
   Probing(const Recipe& recipe, Inputs& inputs, const std::vector<ImageSpec>& images,
           Renderer& renderer, const std::filesystem::path& folder, bool by_error)
-      : samples_(probe_samples(recipe.engine)),
+      : pictures_(recipe.outputs.image),
+        samples_(probe_samples(recipe.engine)),
         warm_(recipe, k_cold_spp, std::nullopt, images, inputs, renderer, folder / "warm"),
         cold_(recipe, k_cold_spp, std::nullopt, images, inputs, renderer, folder / "cold"),
         low_(recipe, samples_.low, std::nullopt, images, inputs, renderer, folder / "low"),
         high_(recipe, samples_.high, std::nullopt, images, inputs, renderer, folder / "high") {
     if (!by_error) return;
+    DS_ASSERT(pictures_);
     // An error that no picture reaches: max_spp ends it.
     ErrorTarget target{1e-6, k_target_probe_spp, {}};
     if (recipe.engine.target) target.region = recipe.engine.target->region;
@@ -141,12 +143,17 @@ class Probing {
     probe.low_spp = samples_.low;
     probe.high_spp = samples_.high;
     // Differences of times: by chance below what they measure, which is above 0.
-    probe.sample_seconds = std::max(0.0, (high - low) / (samples_.high - samples_.low));
-    probe.image_seconds = std::max(0.0, low - probe.sample_seconds * samples_.low);
+    if (pictures_) {
+      probe.sample_seconds = std::max(0.0, (high - low) / (samples_.high - samples_.low));
+      probe.image_seconds = std::max(0.0, low - probe.sample_seconds * samples_.low);
+      probe.low_error = low_.picture(id).relative_error;
+      probe.high_error = high_.picture(id).relative_error;
+    } else {
+      // No path is traced, so both did the same.
+      probe.image_seconds = (low + high) / 2;
+    }
     probe.scene_seconds =
         std::max(0.0, cold - probe.image_seconds - probe.sample_seconds * k_cold_spp);
-    probe.low_error = low_.picture(id).relative_error;
-    probe.high_error = high_.picture(id).relative_error;
     for (const auto& [kind, bytes] : low_.bytes(id))
       probe.bytes[kind].low = bytes;
     for (const auto& [kind, bytes] : high_.bytes(id))
@@ -165,6 +172,7 @@ class Probing {
     return TargetProbe{spp, *facts.developed_high, std::max(0.0, seconds - image_seconds) / spp};
   }
 
+  bool pictures_;
   ProbeSamples samples_;
   ProbeBuild warm_, cold_, low_, high_;
   std::optional<ProbeBuild> target_;

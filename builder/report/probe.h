@@ -33,8 +33,8 @@ struct Probe {
   int low_spp = 0, high_spp = 0;
   double scene_seconds = 0;   ///< once for a scene: reading, tree, upload
   double image_seconds = 0;   ///< all else that does not grow with samples: mask, encoding, disk
-  double sample_seconds = 0;  ///< a sample of every pixel
-  std::optional<double> low_error, high_error;  ///< Film::relative_error
+  double sample_seconds = 0;  ///< a sample of every pixel; 0 without a picture
+  std::optional<double> low_error, high_error;  ///< Film::relative_error; none without a picture
   std::map<std::string, ProbedSize> bytes;      ///< by kind of product
   std::optional<TargetProbe> target;            ///< where it was asked for
 };
@@ -57,10 +57,10 @@ ProbeSamples probe_samples(const EngineSettings& engine);
 inline constexpr int k_target_probe_spp = 64;
 
 /// Makes images in a folder of their own as a build would, forced, and measures what it takes.
-/// `by_error`: with a TargetProbe each. An image whose scene is that of the one before tells
-/// nothing of loading it. `folder` must be on the file system that the dataset is to be on for its
-/// writing to count; it is filled and may be removed afterwards. `images` are of `recipe`. Throws
-/// what making them throws.
+/// `by_error`: with a TargetProbe each, which needs a recipe that makes pictures. An image whose
+/// scene is that of the one before tells nothing of loading it. `folder` must be on the file system
+/// that the dataset is to be on for its writing to count; it is filled and may be removed
+/// afterwards. `images` are of `recipe`. Throws what making them throws.
 std::vector<Probe> probe_images(const Recipe& recipe, Inputs& inputs,
                                 const std::vector<ImageSpec>& images, Renderer& renderer,
                                 const std::filesystem::path& folder, bool by_error,

@@ -12,6 +12,7 @@ namespace ds {
 namespace {
 
 using testing::ElementsAre;
+using testing::Key;
 
 Probe probe(double image, double sample, double error_at_one) {
   Probe p;
@@ -245,6 +246,42 @@ TEST_F(CalibrationTest, MeasuresWhatABuildTakesAndLeavesNothingBehind) {
       EXPECT_GT(p.bytes.at("mask").high, 0);
       EXPECT_GT(p.bytes.at("film").high, 0);
     }
+}
+
+TEST_F(CalibrationTest, WithoutAPictureThereAreNoSamples) {
+  const std::vector<std::string> geometry{"outputs.image=false", "outputs.depth=exr",
+                                          "engine.error=0.05"};
+  for (const bool by_error : {false, true}) {
+    const Calibration c = calibrated(geometry, false, by_error);
+    EXPECT_EQ(c.measured > 0, !by_error) << "an error is of pictures";
+    ASSERT_EQ(c.pairs.size(), 4U);
+    for (const std::vector<Probe>& probes : c.probes)
+      for (const Probe& p : probes) {
+        EXPECT_EQ(p.sample_seconds, 0);
+        EXPECT_NEAR(p.image_seconds, 0.03, 1e-9);
+        EXPECT_NEAR(p.scene_seconds, 0.5, 1e-9);
+        EXPECT_FALSE(p.low_error || p.high_error || p.target);
+        EXPECT_THAT(p.bytes, ElementsAre(Key("depth"), Key("mask")));
+      }
+  }
+  request.overrides = geometry;
+  const Forecast f = forecast(join(work_of(plan(), true), calibrated(geometry)), {std::nullopt, 0});
+  EXPECT_NEAR(f.seconds.value, 4 * 0.5 + 8 * 0.03, 1e-9);
+  EXPECT_THAT(f.bytes_by_kind, ElementsAre(Key("depth"), Key("mask")));
+  EXPECT_TRUE(std::isfinite(f.bytes.value));
+  EXPECT_EQ(f.pairs.front().spp, 0);
+  EXPECT_EQ(f.pairs.front().error, 0);
+  EXPECT_TRUE(calls.traced.empty());
+}
+
+TEST_F(CalibrationTest, LeavesNothingBehindWhereItFails) {
+  calls.fails_on = expand(read_recipe(recipe_folder() / "recipe.toml", {})).back().id;
+  EXPECT_THROW(calibrated({}), Error);
+  EXPECT_FALSE(std::filesystem::exists(scratch() / "work"));
+  calls.fails_on.clear();
+  stop = true;
+  EXPECT_THROW(calibrated({}), Error);
+  EXPECT_FALSE(std::filesystem::exists(scratch() / "work"));
 }
 
 TEST_F(CalibrationTest, IsMeasuredOnceForEachDeviceAndProgram) {

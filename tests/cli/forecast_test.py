@@ -36,6 +36,24 @@ class ForecastTest(TinyCase):
         # Every image of the tiny dataset is near another that was probed; equal files are stored once.
         self.assertAlmostEqual(told["bytes"]["value"] / objects, 1, delta=0.25)
 
+    def test_without_pictures_there_are_no_samples(self):
+        geometry = ("--set", "outputs.image=false", "--set", "outputs.depth=exr")
+        for error in ((), ("--set", "engine.error=0.05")):
+            told = self.forecast("--time", *geometry, *error)
+            self.assertGreater(told["seconds"]["value"], 0)
+            self.assertEqual(set(told["bytes_by_kind"]), {"depth", "mask"})
+            for pair in told["pairs"]:
+                self.assertEqual((pair["spp"], pair["error"]), (0, None))
+        self.assertIn("no samples, as outputs.image = false", self.plan("--time", *geometry).out)
+        for question in (("--error", "0.02"), ("--budget", "8h")):
+            run = self.plan(*question, *geometry, code=2)
+            self.assertIn(f"{question[0]} is of pictures", run.err)
+        self.build(*geometry)
+        objects = sum(path.stat().st_size for path in (self.out / ".dsbuild/objects").rglob("*") if path.is_file())
+        self.assertAlmostEqual(told["bytes"]["value"] / objects, 1, delta=0.25)
+        self.assertEqual(self.forecast("--time", *geometry)["seconds"]["value"], 0)
+        self.assertEqual([path.name for path in (self.folder / "cache/dsbuild").glob("calibrating-*")], [])
+
     def test_a_smaller_error_takes_longer_and_a_budget_buys_it_back(self):
         near, far = self.forecast("--error", "0.001"), self.forecast("--error", "0.1")
         self.assertGreater(near["seconds"]["value"], far["seconds"]["value"])
