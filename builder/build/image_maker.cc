@@ -35,8 +35,6 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-constexpr const char* k_sums_kind = "film_sums";
-
 Product product_of(Hash128 key, const std::string& kind) {
   Product product;
   product.key = key;

@@ -14,6 +14,9 @@
 
 namespace ds {
 
+/// Product::kind of a kept film's sums.
+inline constexpr const char* k_sums_kind = "film_sums";
+
 /// What one image's making took.
 struct ImageWork {
   bool traced = false;        ///< film or geometry

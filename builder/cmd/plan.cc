@@ -139,7 +139,7 @@ int run_plan(const Arguments& arguments) {
     const Calibration calibration = calibration_of(
         arguments, dataset, inputs, wish.all_images() || dataset.recipe.engine.target);
     const Answer found =
-        answer(wish, dataset.recipe, join(work_of(plan, dataset.recipe.keep_film), calibration));
+        answer(wish, dataset.recipe, join(work_of(plan, dataset.recipe), calibration));
     answered = found.forecast.has_value();
     if (arguments.json)
       object["forecast"] = answer_json(found, calibration);

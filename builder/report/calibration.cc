@@ -105,6 +105,7 @@ Hash128 probe_key(const ImageKeys& keys, const Recipe& recipe, const std::string
   if (recipe.engine.target && recipe.engine.target->region == ErrorRegion::model)
     text.add("error_region", "model");
   text.add("keep_film", recipe.keep_film);
+  if (recipe.keep_sums) text.add("keep_sums", true);
   text.add("device", device);
   return hash_text(text.text());
 }

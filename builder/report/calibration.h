@@ -25,7 +25,7 @@ class CalibrationCache {
 };
 
 /// What a probe of this image depends on: every part of its render key (the program's text is in
-/// it) but the samples, what becomes of the film, and the device. `keys` are of the image at
+/// it) but the samples, what is kept of the film, and the device. `keys` are of the image at
 /// probe_samples().high.
 Hash128 probe_key(const ImageKeys& keys, const Recipe& recipe, const std::string& device);
 

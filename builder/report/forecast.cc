@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/report/forecast.h"
 
+#include "builder/build/image_maker.h"
 #include "tracer/base/error.h"
 #include "tracer/render/schedule.h"
 
@@ -52,9 +53,9 @@ double spp_of(const std::optional<ErrorLaw>& law, const Samples& samples) {
 
 /// Size of a file, with the trend from few to more samples carried on by logarithm: less noise
 /// compresses better, and each halving of the noise saves about as many bits. Never less than half
-/// of what was seen.
-double size_at(const ProbedSize& size, const Probe& probe, double spp) {
-  if (size.low == size.high) return size.high;  // no samples are in it, as in a mask
+/// of what was seen. Kept sums are not compressed, and masks hold no samples.
+double size_at(const std::string& kind, const ProbedSize& size, const Probe& probe, double spp) {
+  if (kind == k_sums_kind || size.low == size.high) return size.high;
   const double doublings = std::log2(double(probe.high_spp) / probe.low_spp);
   const double trend = (size.high - size.low) / doublings;
   const double at = size.high + trend * std::log2(spp / probe.high_spp);
@@ -186,7 +187,7 @@ PairForecast forecast_pair(const ProbedWork& pair, const Samples& samples, Total
     for (std::size_t i = 0; i < pair.probes.size(); ++i) {
       const auto found = pair.probes[i].bytes.find(kind);
       if (found != pair.probes[i].bytes.end())
-        sizes.push_back(size_at(found->second, pair.probes[i], spp[i]));
+        sizes.push_back(size_at(kind, found->second, pair.probes[i], spp[i]));
     }
     if (sizes.empty()) continue;
     by_kind[kind] += static_cast<double>(count) * mean_of(sizes);
@@ -226,7 +227,7 @@ std::vector<std::optional<ErrorLaw>> error_laws(const std::vector<Probe>& probes
   return laws;
 }
 
-std::vector<PairWork> work_of(const Plan& plan, bool keep_film) {
+std::vector<PairWork> work_of(const Plan& plan, const Recipe& recipe) {
   using SceneName = std::tuple<std::filesystem::path, std::filesystem::path, std::filesystem::path>;
   std::map<std::pair<std::string, std::string>, PairWork> pairs;
   std::map<std::pair<std::string, std::string>, std::set<SceneName>> scenes;
@@ -245,7 +246,8 @@ std::vector<PairWork> work_of(const Plan& plan, bool keep_film) {
       }
     if (image.trace_film) {
       ++pair.trace;
-      if (keep_film) ++pair.files["film"];
+      if (recipe.keep_film) ++pair.files["film"];
+      if (recipe.keep_sums) ++pair.files[k_sums_kind];
     } else if (to_make > 0) {
       ++pair.remake;
     }

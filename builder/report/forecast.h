@@ -22,9 +22,9 @@ struct PairWork {
   std::map<std::string, std::uint64_t> files;  ///< to make, by kind, films too
 };
 
-/// The work that a plan leaves, by pair, in the order of images_to_probe. Images that fail count as
-/// images only.
-std::vector<PairWork> work_of(const Plan& plan, bool keep_film);
+/// The work that a plan of the recipe leaves, by pair, in the order of images_to_probe. Images that
+/// fail count as images only.
+std::vector<PairWork> work_of(const Plan& plan, const Recipe& recipe);
 
 /// How many samples the images get.
 struct Samples {

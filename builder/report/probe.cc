@@ -67,8 +67,11 @@ class ProbeBuild {
     std::map<std::string, double> sizes;
     for (const OutputFile& output : image(id).keys.outputs)
       sizes[output.kind] = static_cast<double>(product(output.key).size_bytes);
-    if (dataset_.recipe.keep_film && dataset_.recipe.outputs.image)
+    if (!dataset_.recipe.outputs.image) return sizes;
+    if (dataset_.recipe.keep_film)
       sizes["film"] = static_cast<double>(product(image(id).keys.render).size_bytes);
+    if (dataset_.recipe.keep_sums)
+      sizes[k_sums_kind] = static_cast<double>(product(image(id).keys.kept).size_bytes);
     return sizes;
   }
 
@@ -79,7 +82,6 @@ class ProbeBuild {
     dataset_.recipe = recipe;
     dataset_.recipe.engine.spp = spp;
     dataset_.recipe.engine.target = std::move(target);
-    dataset_.recipe.keep_sums = false;
     // Identities do not depend on the other models: these alone expand to the same images.
     std::set<std::filesystem::path> models;
     for (const ImageSpec& image : images)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/report/forecast.h"
 #include "tests/builder/tiny_dataset.h"
+#include "tracer/render/film.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -194,6 +195,11 @@ class TimedRenderer : public FakeRenderer {
     const int spp = target ? target->max_spp : image.engine.spp;
     clock += (target ? 0.003 : 0.002) * spp;
     film.relative_error = 0.8 / std::sqrt(spp);
+    *kept = empty_film(film.width, film.height);
+    kept->tile_spp.assign(kept->tile_spp.size(), static_cast<std::uint32_t>(spp));
+    // A plane more has values than with few samples; no more follow.
+    std::fill_n(kept->row(0, 0).begin(), 1, 1.0f);
+    if (spp > 8) std::fill_n(kept->row(0, 1).begin(), 1, 1.0f);
     if (target) {
       film.facts.samples = static_cast<std::uint64_t>(film.width * film.height * spp);
       film.facts.developed_high = 0.4 / std::sqrt(spp);
@@ -219,9 +225,12 @@ class TimedRenderer : public FakeRenderer {
 
 class CalibrationTest : public TinyDataset {
  protected:
+  Recipe recipe(const std::vector<std::string>& overrides = {}) const {
+    return read_recipe(recipe_folder() / "recipe.toml", overrides);
+  }
   Calibration calibrated(const std::vector<std::string>& overrides, bool again = false,
                          bool by_error = false) {
-    const Recipe recipe = read_recipe(recipe_folder() / "recipe.toml", overrides);
+    const Recipe recipe = this->recipe(overrides);
     Database database{std::filesystem::path()};
     Inputs inputs(database);
     TimedRenderer renderer(calls);
@@ -265,7 +274,8 @@ TEST_F(CalibrationTest, WithoutAPictureThereAreNoSamples) {
       }
   }
   request.overrides = geometry;
-  const Forecast f = forecast(join(work_of(plan(), true), calibrated(geometry)), {std::nullopt, 0});
+  const Forecast f =
+      forecast(join(work_of(plan(), recipe()), calibrated(geometry)), {std::nullopt, 0});
   EXPECT_NEAR(f.seconds.value, 4 * 0.5 + 8 * 0.03, 1e-9);
   EXPECT_THAT(f.bytes_by_kind, ElementsAre(Key("depth"), Key("mask")));
   EXPECT_TRUE(std::isfinite(f.bytes.value));
@@ -274,8 +284,19 @@ TEST_F(CalibrationTest, WithoutAPictureThereAreNoSamples) {
   EXPECT_TRUE(calls.traced.empty());
 }
 
+TEST_F(CalibrationTest, KeptSumsAreForetold) {
+  const std::vector<std::string> keep{"engine.keep_film=true", "engine.spp=1024"};
+  EXPECT_GT(calibrated({}).measured, 0U);
+  const Calibration c = calibrated(keep);
+  EXPECT_GT(c.measured, 0U) << "what was kept knows nothing of the sums";
+  request.overrides = keep;
+  const Forecast f = forecast(join(work_of(plan(), recipe(keep)), c), {std::nullopt, 1024});
+  // 64 tiles' samples, and two planes of 1024 pixels; some hundred bytes say so.
+  EXPECT_NEAR(f.bytes_by_kind.at("film_sums"), 8 * (64 * 4 + 2 * 1024 * 4 + 100), 8 * 50);
+}
+
 TEST_F(CalibrationTest, LeavesNothingBehindWhereItFails) {
-  calls.fails_on = expand(read_recipe(recipe_folder() / "recipe.toml", {})).back().id;
+  calls.fails_on = expand(recipe()).back().id;
   EXPECT_THROW(calibrated({}), Error);
   EXPECT_FALSE(std::filesystem::exists(scratch() / "work"));
   calls.fails_on.clear();
@@ -314,7 +335,7 @@ TEST_F(CalibrationTest, ProbesEngineErrorWhereItIsAskedFor) {
 }
 
 TEST_F(CalibrationTest, WorkIsWhatThePlanLeaves) {
-  const std::vector<PairWork> all = work_of(plan(), true);
+  const std::vector<PairWork> all = work_of(plan(), recipe());
   ASSERT_EQ(all.size(), 4U);
   std::uint64_t images = 0;
   for (const PairWork& pair : all) {
@@ -325,12 +346,12 @@ TEST_F(CalibrationTest, WorkIsWhatThePlanLeaves) {
   }
   EXPECT_EQ(images, k_images);
   build();
-  for (const PairWork& pair : work_of(plan(), true)) {
+  for (const PairWork& pair : work_of(plan(), recipe())) {
     EXPECT_EQ(pair.trace + pair.remake + pair.scenes, 0U);
     EXPECT_TRUE(pair.files.empty());
   }
   edit("materials/red.mat", "kd = 0.7 0.1 0.1", "kd = 0.75 0.1 0.1");
-  for (const PairWork& pair : work_of(plan(), false)) {
+  for (const PairWork& pair : work_of(plan(), recipe({"outputs.keep_film=false"}))) {
     EXPECT_EQ(pair.trace, pair.material == "red" ? pair.images : 0);
     EXPECT_EQ(pair.files.count("mask"), 0U) << "a colour moves no mask";
     EXPECT_EQ(pair.files.count("film"), 0U);
@@ -339,7 +360,7 @@ TEST_F(CalibrationTest, WorkIsWhatThePlanLeaves) {
 
 TEST_F(CalibrationTest, PairsAndTheirWorkComeTogether) {
   const Calibration c = calibrated({});
-  const std::vector<ProbedWork> joined = join(work_of(plan(), true), c);
+  const std::vector<ProbedWork> joined = join(work_of(plan(), recipe()), c);
   ASSERT_EQ(joined.size(), 4U);
   const Forecast f = forecast(joined, {std::nullopt, 100});
   double scenes = 0;

@@ -2,7 +2,7 @@
 """What plan foretells; that it is right is measured by ci/forecast, since a shared machine makes any one time wrong."""
 import os
 
-from harness import IMAGES, TinyCase, main
+from harness import IMAGES, SAMPLES, TinyCase, main
 
 
 class ForecastTest(TinyCase):
@@ -14,6 +14,10 @@ class ForecastTest(TinyCase):
 
     def forecast(self, *arguments, code=0):
         return self.plan(*arguments, "--json", code=code).json["forecast"]
+
+    def stored(self):
+        """Bytes of the objects in the dataset's store."""
+        return sum(path.stat().st_size for path in (self.out / ".dsbuild/objects").rglob("*") if path.is_file())
 
     def test_time_of_what_is_stale(self):
         told = self.forecast("--time")
@@ -32,9 +36,14 @@ class ForecastTest(TinyCase):
     def test_disk_is_what_a_build_writes(self):
         told = self.forecast("--time", "--set", "engine.spp=16")
         self.build("--set", "engine.spp=16")
-        objects = sum(path.stat().st_size for path in (self.out / ".dsbuild/objects").rglob("*") if path.is_file())
         # Every image of the tiny dataset is near another that was probed; equal files are stored once.
-        self.assertAlmostEqual(told["bytes"]["value"] / objects, 1, delta=0.25)
+        self.assertAlmostEqual(told["bytes"]["value"] / self.stored(), 1, delta=0.25)
+        before = self.stored()
+        kept = ("--set", "engine.spp=17", "--set", "engine.keep_film=true")
+        told = self.forecast("--time", *kept)
+        self.assertGreater(told["bytes_by_kind"]["film_sums"], IMAGES * SAMPLES * 150)
+        self.build(*kept)
+        self.assertAlmostEqual(told["bytes"]["value"] / (self.stored() - before), 1, delta=0.1)
 
     def test_without_pictures_there_are_no_samples(self):
         geometry = ("--set", "outputs.image=false", "--set", "outputs.depth=exr")
@@ -49,8 +58,7 @@ class ForecastTest(TinyCase):
             run = self.plan(*question, *geometry, code=2)
             self.assertIn(f"{question[0]} is of pictures", run.err)
         self.build(*geometry)
-        objects = sum(path.stat().st_size for path in (self.out / ".dsbuild/objects").rglob("*") if path.is_file())
-        self.assertAlmostEqual(told["bytes"]["value"] / objects, 1, delta=0.25)
+        self.assertAlmostEqual(told["bytes"]["value"] / self.stored(), 1, delta=0.25)
         self.assertEqual(self.forecast("--time", *geometry)["seconds"]["value"], 0)
         self.assertEqual([path.name for path in (self.folder / "cache/dsbuild").glob("calibrating-*")], [])
 
