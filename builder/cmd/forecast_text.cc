@@ -30,6 +30,7 @@ nlohmann::json to_json(const PairForecast& pair) {
                         {"images", pair.images},
                         {"made", pair.made},
                         {"spp", pair.spp},
+                        {"traced_spp", pair.traced_spp},
                         {"error", nullptr},
                         {"seconds_an_image", pair.seconds_an_image}};
   if (pair.spp > 0) object["error"] = pair.error;
@@ -63,13 +64,13 @@ std::string pairs_text(const Forecast& forecast) {
     material = std::max(material, pair.material.size());
   }
   std::string text =
-      fmt::format("{:{}}  {:{}}  {:>9}  {:>8}  {:>8}  {:>10}\n", "environment", environment,
-                  "material", material, "to make", "samples", "error", "s an image");
+      fmt::format("{:{}}  {:{}}  {:>9}  {:>8}  {:>8}  {:>8}  {:>10}\n", "environment", environment,
+                  "material", material, "to make", "samples", "to trace", "error", "s an image");
   for (const PairForecast& pair : forecast.pairs)
-    text +=
-        fmt::format("{:{}}  {:{}}  {:>9}  {:>8}  {:>8}  {:>10.3g}\n", pair.environment, environment,
-                    pair.material, material, fmt::format("{}/{}", pair.made, pair.images),
-                    samples_text(pair.spp), error_text(pair), pair.seconds_an_image);
+    text += fmt::format("{:{}}  {:{}}  {:>9}  {:>8}  {:>8}  {:>8}  {:>10.3g}\n", pair.environment,
+                        environment, pair.material, material,
+                        fmt::format("{}/{}", pair.made, pair.images), samples_text(pair.spp),
+                        samples_text(pair.traced_spp), error_text(pair), pair.seconds_an_image);
   return text;
 }
 

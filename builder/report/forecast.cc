@@ -147,26 +147,36 @@ double time_per_slope(const ProbedWork& pair, const std::vector<std::optional<Er
   return static_cast<double>(pair.work.trace) * sum / static_cast<double>(pair.probes.size());
 }
 
+/// Samples a pixel that the films still take to have `spp`, on their average. A film that was kept
+/// with more was made for a smaller error, so one go does not come by it: it is started anew.
+double missing_spp(const PairWork& work, double spp) {
+  if (work.trace == 0) return 0;
+  double kept = 0;
+  for (const auto& [samples, films] : work.kept)
+    if (samples <= spp) kept += samples * static_cast<double>(films);
+  return spp - kept / static_cast<double>(work.trace);
+}
+
 PairForecast forecast_pair(const ProbedWork& pair, const Samples& samples, Totals& totals,
                            std::map<std::string, double>& by_kind) {
   const bool by_error = samples.error.has_value();
   const std::vector<std::optional<ErrorLaw>> laws = error_laws(pair.probes, by_error);
-  PairForecast out{pair.work.environment,
-                   pair.work.material,
-                   pair.work.images,
-                   pair.work.trace + pair.work.remake,
-                   0,
-                   0,
-                   0};
+  PairForecast out;
+  out.environment = pair.work.environment;
+  out.material = pair.work.material;
+  out.images = pair.work.images;
+  out.made = pair.work.trace + pair.work.remake;
   std::vector<double> traced;
   std::vector<double> remade;
   std::vector<double> scenes;
   std::vector<double> spp;
+  std::vector<double> missing;
   std::vector<double> squares;
   for (std::size_t i = 0; i < pair.probes.size(); ++i) {
     const Probe& probe = pair.probes[i];
     spp.push_back(spp_of(laws[i], samples));
-    traced.push_back(probe.image_seconds + sample_seconds(probe, by_error) * spp.back());
+    missing.push_back(missing_spp(pair.work, spp.back()));
+    traced.push_back(probe.image_seconds + sample_seconds(probe, by_error) * missing.back());
     remade.push_back(probe.image_seconds);
     scenes.push_back(probe.scene_seconds);
     if (laws[i]) squares.push_back(squared(laws[i]->error(spp.back())));
@@ -176,7 +186,11 @@ PairForecast forecast_pair(const ProbedWork& pair, const Samples& samples, Total
         squared(time_per_slope(pair, laws, spp)) /
         static_cast<double>(std::max<std::size_t>(1, slopes_of(pair.probes).size()));
   out.spp = mean_of(spp);
-  out.seconds_an_image = mean_of(traced);
+  out.traced_spp = mean_of(missing);
+  if (out.made > 0)
+    out.seconds_an_image = (static_cast<double>(pair.work.trace) * mean_of(traced) +
+                            static_cast<double>(pair.work.remake) * mean_of(remade)) /
+                           static_cast<double>(out.made);
   if (!squares.empty()) out.error = std::sqrt(mean_of(squares));
   if (pair.work.trace > 0) totals.images.add(static_cast<double>(pair.work.trace), traced);
   if (pair.work.remake > 0) totals.images.add(static_cast<double>(pair.work.remake), remade);
@@ -194,6 +208,11 @@ PairForecast forecast_pair(const ProbedWork& pair, const Samples& samples, Total
     totals.bytes.add(static_cast<double>(count), sizes);
   }
   return out;
+}
+
+double kept_spp(const PlannedImage& image) {
+  return static_cast<double>(image.kept_samples) /
+         (double(image.spec.engine.width) * image.spec.engine.height);
 }
 
 }  // namespace
@@ -246,6 +265,7 @@ std::vector<PairWork> work_of(const Plan& plan, const Recipe& recipe) {
       }
     if (image.trace_film) {
       ++pair.trace;
+      if (image.kept_samples > 0) ++pair.kept[kept_spp(image)];
       if (recipe.keep_film) ++pair.files["film"];
       if (recipe.keep_sums) ++pair.files[k_sums_kind];
     } else if (to_make > 0) {

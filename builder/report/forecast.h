@@ -20,6 +20,8 @@ struct PairWork {
   std::uint64_t remake = 0;                    ///< images of which only other files are made
   std::uint64_t scenes = 0;                    ///< to load: each once, its images follow each other
   std::map<std::string, std::uint64_t> files;  ///< to make, by kind, films too
+  /// Of the films to trace those that go on from a kept one: how many have as many samples a pixel.
+  std::map<double, std::uint64_t> kept;
 };
 
 /// The work that a plan of the recipe leaves, by pair, in the order of images_to_probe. Images that
@@ -38,9 +40,10 @@ struct PairForecast {
   std::string environment, material;
   std::uint64_t images = 0, made = 0;
   double spp = 0;               ///< mean; 0 where there is no picture
+  double traced_spp = 0;        ///< mean of the films to trace, less what kept ones have
   double error = 0;             ///< RMS relative error (by error: the developed picture's, upper
                                 ///< end); 0 where no probe could tell
-  double seconds_an_image = 0;  ///< mean, without its scene
+  double seconds_an_image = 0;  ///< mean of what is made, without its scene
 };
 
 struct Forecast {

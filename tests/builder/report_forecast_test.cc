@@ -57,7 +57,28 @@ TEST(Forecast, WhatIsDoneCostsNothing) {
   EXPECT_EQ(none.seconds.high, 0);
   EXPECT_EQ(none.bytes.value, 0);
   done.work.remake = 50;
-  EXPECT_NEAR(forecast({done}, {std::nullopt, 64}).seconds.value, 5, 1e-9);
+  const Forecast remade = forecast({done}, {std::nullopt, 64});
+  EXPECT_NEAR(remade.seconds.value, 5, 1e-9);
+  EXPECT_NEAR(remade.pairs[0].seconds_an_image, 0.1, 1e-12);
+  EXPECT_EQ(remade.pairs[0].traced_spp, 0);
+}
+
+TEST(Forecast, KeptFilmsTakeTheMissingSamplesOnly) {
+  ProbedWork w = work(100, {probe(0.1, 0.01, 0.8)});
+  w.work.kept = {{64, 100}};
+  Forecast f = forecast({w}, {std::nullopt, 65});
+  EXPECT_NEAR(f.seconds.value, 10 * 0.5 + 100 * (0.1 + 0.01), 1e-9);
+  EXPECT_EQ(f.pairs[0].spp, 65);
+  EXPECT_NEAR(f.pairs[0].traced_spp, 1, 1e-12);
+  EXPECT_NEAR(f.pairs[0].seconds_an_image, 0.11, 1e-12);
+  EXPECT_NEAR(f.pairs[0].error, 0.8 / std::sqrt(65), 1e-12) << "of the whole film";
+  // Half of the films, and of these half with other samples.
+  w.work.kept = {{16, 25}, {64, 25}};
+  f = forecast({w}, {std::nullopt, 65});
+  EXPECT_NEAR(f.pairs[0].traced_spp, (50 * 65 + 25 * 49 + 25 * 1) / 100.0, 1e-12);
+  // To an error of 0.16 it takes 25 samples: one with more was for a smaller error.
+  f = forecast({w}, {0.16, 0});
+  EXPECT_NEAR(f.pairs[0].traced_spp, (75 * 25 + 25 * 9) / 100.0, 1e-9);
 }
 
 TEST(Forecast, IntervalIsThatOfASampledTotal) {

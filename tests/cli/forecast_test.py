@@ -45,6 +45,21 @@ class ForecastTest(TinyCase):
         self.build(*kept)
         self.assertAlmostEqual(told["bytes"]["value"] / (self.stored() - before), 1, delta=0.1)
 
+    def test_kept_films_take_the_missing_samples_only(self):
+        keep = ("--set", "engine.keep_film=true")
+        whole = self.forecast("--time", *keep, "--set", "engine.spp=65")
+        self.build(*keep, "--set", "engine.spp=64")
+        more = self.forecast("--time", *keep, "--set", "engine.spp=65")
+        for before, pair in zip(whole["pairs"], more["pairs"]):
+            self.assertEqual((pair["spp"], before["traced_spp"], pair["traced_spp"]), (65, 65, 1))
+            self.assertEqual(pair["made"], before["made"])
+        self.assertEqual(more["measured"], 0)
+        self.assertLess(more["seconds"]["value"], whole["seconds"]["value"])
+        self.build(*keep, "--set", "engine.error=0.02")
+        for pair in self.forecast("--time", *keep, "--set", "engine.error=0.001")["pairs"]:
+            self.assertGreater(pair["traced_spp"], 0)
+            self.assertLessEqual(pair["traced_spp"], pair["spp"] - 16)
+
     def test_without_pictures_there_are_no_samples(self):
         geometry = ("--set", "outputs.image=false", "--set", "outputs.depth=exr")
         for error in ((), ("--set", "engine.error=0.05")):
