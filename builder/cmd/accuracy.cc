@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/report/accuracy.h"
 
+#include "builder/cmd/forecast_text.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/stop_signal.h"
 #include "builder/cmd/verbs.h"
@@ -21,21 +22,17 @@ Against against_of(const std::string& name) {
   return name == "minutes" ? Against::minutes : Against::both;
 }
 
-nlohmann::json to_json(const Interval& interval) {
-  return {{"value", interval.value}, {"low", interval.low}, {"high", interval.high}};
-}
-
 nlohmann::json to_json(const PairAccuracy& pair) {
   nlohmann::json object{{"environment", pair.environment},
                         {"material", pair.material},
                         {"image", pair.image},
                         {"images", pair.images}};
-  if (pair.law) object["slope"] = to_json(pair.law->line.slope_interval());
+  if (pair.law) object["slope"] = interval_json(pair.law->line.slope_interval());
   object["targets"] = nlohmann::json::array();
   for (const Target& target : pair.targets)
     object["targets"].push_back({{"error", target.error},
-                                 {"spp", to_json(target.spp)},
-                                 {"seconds", to_json(target.seconds)},
+                                 {"spp", interval_json(target.spp)},
+                                 {"seconds", interval_json(target.seconds)},
                                  {"extrapolated", target.extrapolated}});
   return object;
 }

@@ -10,10 +10,6 @@
 namespace ds {
 namespace {
 
-nlohmann::json interval_json(const Interval& interval) {
-  return {{"value", interval.value}, {"low", interval.low}, {"high", interval.high}};
-}
-
 std::string samples_text(double spp) {
   if (spp == 0) return "-";
   return spp < 100 ? fmt::format("{:.1f}", spp) : fmt::format("{:.0f}", spp);
@@ -32,9 +28,16 @@ nlohmann::json to_json(const PairForecast& pair) {
                         {"spp", pair.spp},
                         {"traced_spp", pair.traced_spp},
                         {"error", nullptr},
+                        {"capped", pair.capped},
                         {"seconds_an_image", pair.seconds_an_image}};
   if (pair.spp > 0) object["error"] = pair.error;
   return object;
+}
+
+/// What stands behind a line of the table.
+std::string capped_text(double share) {
+  if (share == 0) return "";
+  return share > 1 - 1e-9 ? "  capped" : fmt::format("  {:.0f} % capped", 100 * share);
 }
 
 }  // namespace
@@ -67,11 +70,16 @@ std::string pairs_text(const Forecast& forecast) {
       fmt::format("{:{}}  {:{}}  {:>9}  {:>8}  {:>8}  {:>8}  {:>10}\n", "environment", environment,
                   "material", material, "to make", "samples", "to trace", "error", "s an image");
   for (const PairForecast& pair : forecast.pairs)
-    text += fmt::format("{:{}}  {:{}}  {:>9}  {:>8}  {:>8}  {:>8}  {:>10.3g}\n", pair.environment,
+    text += fmt::format("{:{}}  {:{}}  {:>9}  {:>8}  {:>8}  {:>8}  {:>10.3g}{}\n", pair.environment,
                         environment, pair.material, material,
                         fmt::format("{}/{}", pair.made, pair.images), samples_text(pair.spp),
-                        samples_text(pair.traced_spp), error_text(pair), pair.seconds_an_image);
+                        samples_text(pair.traced_spp), error_text(pair), pair.seconds_an_image,
+                        capped_text(pair.capped));
   return text;
+}
+
+nlohmann::json interval_json(const Interval& interval) {
+  return {{"value", interval.value}, {"low", interval.low}, {"high", interval.high}};
 }
 
 nlohmann::json to_json(const Forecast& forecast) {

@@ -16,6 +16,8 @@ std::string size_text(const Interval& bytes);
 /// A table, one pair a line.
 std::string pairs_text(const Forecast& forecast);
 
+/// {"value": ..., "low": ..., "high": ...}.
+nlohmann::json interval_json(const Interval& interval);
 nlohmann::json to_json(const Forecast& forecast);
 
 }  // namespace ds

@@ -5,8 +5,12 @@
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/stop_signal.h"
 #include "builder/cmd/verbs.h"
+#include "builder/report/budget.h"
 #include "tracer/device/program_cache.h"
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstdio>
 #include <unistd.h>
 
@@ -65,47 +69,80 @@ Calibration calibration_of(const Arguments& arguments, const Dataset& dataset, I
       cache / fmt::format("calibrating-{}", ::getpid()), {told, wall_clock, stop_on_signal()});
 }
 
+/// A larger engine.max_spp, and the error that the budget buys with it.
+struct MoreSamples {
+  int max_spp = 0;
+  double error = 0;
+};
+
 /// What was asked, as a sentence, and the forecast that answers it; none where no error fits into
 /// the budget.
 struct Answer {
   std::string sentence;
-  std::optional<Interval> error;
-  std::optional<Forecast> forecast;
+  std::optional<Bought> bought{};
+  std::optional<MoreSamples> more{};  ///< where engine.max_spp keeps the budget from buying it
+  std::optional<Forecast> forecast{};
 };
 
 std::string percent(double share) {
   return fmt::format("{:.3g} %", 100 * share);
 }
 
+/// engine.max_spp; its default where the recipe has a number of samples instead of an error.
+int max_spp_of(const Recipe& recipe) {
+  return recipe.engine.target.value_or(ErrorTarget{}).max_spp;
+}
+
+Answer answer_budget(double seconds, int max_spp, const std::vector<ProbedWork>& work) {
+  const std::optional<Bought> bought = error_for(work, seconds, max_spp);
+  if (!bought) return {"no error can be had for this budget: the least samples take longer"};
+  const Interval& error = bought->error;
+  Answer answer{fmt::format("the budget buys an error of {} ({} to {})", percent(error.value),
+                            percent(error.low), percent(error.high)),
+                bought};
+  answer.forecast = forecast(work, {error.value, 0, double(max_spp)});
+  if (!bought->capped) return answer;
+  answer.sentence += fmt::format(", the least with engine.max_spp = {}", max_spp);
+  const std::optional<Bought> most = error_for(work, seconds, k_most_spp);
+  if (!most || most->error.value >= error.value) return answer;
+  // A power of two at least: what is foretold of single pictures is not exact.
+  const double needed = std::min(most_spp_for(work, most->error.value), k_most_spp);
+  const auto rounded = std::bit_ceil(static_cast<unsigned>(std::ceil(needed)));
+  answer.more = {static_cast<int>(rounded), most->error.value};
+  answer.sentence +=
+      fmt::format(" ({} would buy {})", answer.more->max_spp, percent(answer.more->error));
+  return answer;
+}
+
 Answer answer(const Wish& wish, const Recipe& recipe, const std::vector<ProbedWork>& work) {
+  const auto foretold = [&](std::string sentence, const Samples& samples) {
+    Answer answer{std::move(sentence)};
+    answer.forecast = forecast(work, samples);
+    return answer;
+  };
   if (!recipe.outputs.image)
-    return {"no samples, as outputs.image = false", {}, forecast(work, {std::nullopt, 0})};
-  if (wish.budget_seconds) {
-    const std::optional<Interval> error = error_for(work, *wish.budget_seconds);
-    if (!error)
-      return {"no error can be had for this budget: the least samples take longer", {}, {}};
-    return {fmt::format("the budget buys an error of {} ({} to {})", percent(error->value),
-                        percent(error->low), percent(error->high)),
-            error, forecast(work, {error->value, 0})};
-  }
-  Samples samples{wish.error, recipe.engine.spp};
-  const std::optional<ErrorTarget>& target = recipe.engine.target;
-  if (target) {
-    samples.error = samples.error.value_or(target->error);
-    samples.most_spp = target->max_spp;
-  }
-  return {samples.error ? fmt::format("every picture to an error of {} (engine.error)",
-                                      percent(*samples.error))
-                        : fmt::format("{} samples a pixel", recipe.engine.spp),
-          std::nullopt, forecast(work, samples)};
+    return foretold("no samples, as outputs.image = false", {std::nullopt, 0});
+  const int max_spp = max_spp_of(recipe);
+  if (wish.budget_seconds) return answer_budget(*wish.budget_seconds, max_spp, work);
+  if (!wish.error && !recipe.engine.target)
+    return foretold(fmt::format("{} samples a pixel", recipe.engine.spp),
+                    {std::nullopt, recipe.engine.spp});
+  const double error = wish.error ? *wish.error : recipe.engine.target->error;
+  return foretold(fmt::format("every picture to an error of {} (engine.error), with at most {} "
+                              "samples a pixel (engine.max_spp)",
+                              percent(error), max_spp),
+                  {error, 0, double(max_spp)});
 }
 
 nlohmann::json answer_json(const Answer& answer, const Calibration& calibration) {
   nlohmann::json object{{"device", calibration.device}, {"measured", calibration.measured}};
   if (answer.forecast) object.update(to_json(*answer.forecast));
-  if (answer.error)
-    object["error"] = {
-        {"value", answer.error->value}, {"low", answer.error->low}, {"high", answer.error->high}};
+  if (answer.bought) {
+    object["error"] = interval_json(answer.bought->error);
+    object["capped"] = answer.bought->capped;
+  }
+  if (answer.more)
+    object["more"] = {{"max_spp", answer.more->max_spp}, {"error", answer.more->error}};
   return object;
 }
 

@@ -6,10 +6,8 @@
 #include "tracer/render/schedule.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <set>
-#include <system_error>
 #include <tuple>
 
 namespace ds {
@@ -22,8 +20,6 @@ constexpr double k_steepest = -1, k_flattest = -1.0 / 3;
 constexpr double k_assumed_scatter = 0.3;
 constexpr double k_assumed_slope_scatter = 0.1;
 constexpr int k_assumed_freedom = 10;
-/// Every picture has a smaller error with its least samples.
-constexpr double k_any_error = 1e6;
 constexpr double k_first_spp = Schedule::k_first_spp;
 
 double squared(double x) {
@@ -133,13 +129,18 @@ double sample_seconds(const Probe& probe, bool by_error) {
   return by_error && probe.target ? probe.target->sample_seconds : probe.sample_seconds;
 }
 
+/// Whether engine.max_spp ends a picture. What is above it by rounding only reaches its error.
+bool is_capped(const std::optional<ErrorLaw>& law, const Samples& samples) {
+  return samples.error && law && law->spp_for(*samples.error) > samples.most_spp * (1 + 1e-9);
+}
+
 /// How much a pair's time changes with its slope: n = (error / c)^(1 / slope) turns about the
-/// samples that were probed.
+/// samples that were probed. That of a capped picture does not.
 double time_per_slope(const ProbedWork& pair, const std::vector<std::optional<ErrorLaw>>& laws,
-                      const std::vector<double>& spp) {
+                      const std::vector<double>& spp, const Samples& samples) {
   double sum = 0;
   for (std::size_t i = 0; i < pair.probes.size(); ++i) {
-    if (!laws[i] || spp[i] <= 1) continue;
+    if (!laws[i] || spp[i] <= 1 || is_capped(laws[i], samples)) continue;
     const Probe& probe = pair.probes[i];
     const double probed = probe.target ? probe.target->spp : probe.high_spp;
     sum += sample_seconds(probe, true) * spp[i] * std::log(spp[i] / probed) / laws[i]->slope;
@@ -179,11 +180,12 @@ PairForecast forecast_pair(const ProbedWork& pair, const Samples& samples, Total
     traced.push_back(probe.image_seconds + sample_seconds(probe, by_error) * missing.back());
     remade.push_back(probe.image_seconds);
     scenes.push_back(probe.scene_seconds);
+    if (is_capped(laws[i], samples)) out.capped += 1.0 / static_cast<double>(pair.probes.size());
     if (laws[i]) squares.push_back(squared(laws[i]->error(spp.back())));
   }
   if (samples.error)
     totals.slope_variance +=
-        squared(time_per_slope(pair, laws, spp)) /
+        squared(time_per_slope(pair, laws, spp, samples)) /
         static_cast<double>(std::max<std::size_t>(1, slopes_of(pair.probes).size()));
   out.spp = mean_of(spp);
   out.traced_spp = mean_of(missing);
@@ -307,49 +309,6 @@ Forecast forecast(const std::vector<ProbedWork>& work, const Samples& samples) {
                                       k_drift * seconds, of_slopes));
   out.bytes = interval_of(totals.bytes.value(), totals.bytes.half());
   return out;
-}
-
-std::optional<Interval> error_for(const std::vector<ProbedWork>& work, double seconds) {
-  const auto knows_error = [](const ProbedWork& pair) {
-    for (const auto& law : error_laws(pair.probes, true))
-      if (!law) return false;
-    return true;
-  };
-  if (work.empty() || !std::all_of(work.begin(), work.end(), knows_error)) return std::nullopt;
-  if (forecast(work, {k_any_error, 1}).seconds.value > seconds) return std::nullopt;
-  // Time falls as the error grows: halve the range of its logarithm until it is narrow.
-  const auto least_error = [&](double Interval::*bound) {
-    double low = std::log(1e-6);
-    double high = std::log(100.0);
-    for (int i = 0; i < 60; ++i) {
-      const double middle = (low + high) / 2;
-      const bool fits = forecast(work, {std::exp(middle), 1}).seconds.*bound <= seconds;
-      (fits ? high : low) = middle;
-    }
-    return std::exp(high);
-  };
-  return Interval{least_error(&Interval::value), least_error(&Interval::low),
-                  least_error(&Interval::high)};
-}
-
-std::optional<double> parse_duration(const std::string& text) {
-  double seconds = 0;
-  double last_unit = 1e9;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (at != end) {
-    double value = 0;
-    const auto [letter, error] = std::from_chars(at, end, value, std::chars_format::fixed);
-    if (error != std::errc() || letter == end || value < 0) return std::nullopt;
-    const double unit = *letter == 'h' ? 3600 : *letter == 'm' ? 60 : *letter == 's' ? 1 : 0;
-    // Hours before minutes before seconds, each once.
-    if (unit == 0 || unit >= last_unit) return std::nullopt;
-    last_unit = unit;
-    seconds += unit * value;
-    at = letter + 1;
-  }
-  if (!(seconds > 0) || !std::isfinite(seconds)) return std::nullopt;
-  return seconds;
 }
 
 }  // namespace ds

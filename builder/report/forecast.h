@@ -28,11 +28,14 @@ struct PairWork {
 /// fail count as images only.
 std::vector<PairWork> work_of(const Plan& plan, const Recipe& recipe);
 
+/// The greatest engine.max_spp that a recipe can have.
+inline constexpr double k_most_spp = 1 << 24;
+
 /// How many samples the images get.
 struct Samples {
-  std::optional<double> error;  ///< as many as engine.error takes to this one, image by image
-  int spp = 1;                  ///< without: this number for all; 0 where there is no picture
-  double most_spp = 1 << 24;    ///< engine.max_spp
+  std::optional<double> error;   ///< as many as engine.error takes to this one, image by image
+  int spp = 1;                   ///< without: this number for all; 0 where there is no picture
+  double most_spp = k_most_spp;  ///< engine.max_spp
 };
 
 /// What is foretold of one pair.
@@ -43,6 +46,7 @@ struct PairForecast {
   double traced_spp = 0;        ///< mean of the films to trace, less what kept ones have
   double error = 0;             ///< RMS relative error (by error: the developed picture's, upper
                                 ///< end); 0 where no probe could tell
+  double capped = 0;            ///< share of the pictures that engine.max_spp ends: 0 .. 1
   double seconds_an_image = 0;  ///< mean of what is made, without its scene
 };
 
@@ -80,13 +84,5 @@ std::vector<std::optional<ErrorLaw>> error_laws(const std::vector<Probe>& probes
 Forecast forecast(const std::vector<ProbedWork>& work, const Samples& samples);
 /// Between calibrating and building on a machine that others used too it was 10 to 26 %.
 inline constexpr double k_drift = 0.15;
-
-/// The least error that can be had within `seconds`, where every picture gets the same error; low
-/// and high are what the ends of the time's interval buy. Nothing where the least
-/// samples a pixel take longer, or where no image's error is known.
-std::optional<Interval> error_for(const std::vector<ProbedWork>& work, double seconds);
-
-/// "8h", "90m", "45s", "1h30m", "2.5h" in seconds. Nothing for any other text or 0.
-std::optional<double> parse_duration(const std::string& text);
 
 }  // namespace ds

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "builder/report/forecast.h"
+#include "builder/report/budget.h"
 #include "tests/builder/tiny_dataset.h"
 #include "tracer/render/film.h"
 
@@ -117,6 +117,11 @@ TEST(Forecast, EngineErrorTakesItsOwnSamples) {
   const Forecast capped = forecast({work(10, {p})}, {0.001, 0, 1024});
   EXPECT_EQ(capped.pairs[0].spp, 1024);
   EXPECT_NEAR(capped.pairs[0].error, 0.4 / 32, 1e-12);
+  EXPECT_EQ(capped.pairs[0].capped, 1);
+  EXPECT_EQ(by_error.pairs[0].capped, 0);
+  Probe clean = p;
+  clean.target->error = 0.001;
+  EXPECT_NEAR(forecast({work(10, {p, clean})}, {0.001, 0, 1024}).pairs[0].capped, 0.5, 1e-12);
   // Without an error it is not asked.
   EXPECT_NEAR(forecast({work(10, {p})}, {std::nullopt, 64}).seconds.value, 0.5 + 10 * 0.74, 1e-9);
 }
@@ -142,16 +147,41 @@ TEST(Forecast, AnUncertainSlopeCountsWithTheDistance) {
 TEST(Forecast, ABudgetBuysTheErrorWhoseTimeItIs) {
   const std::vector<ProbedWork> all{work(10, {probe(0.2, 0.01, 0.8), probe(0.2, 0.02, 0.9)}),
                                     work(20, {probe(0.1, 0.03, 1.6), probe(0.1, 0.02, 1.5)})};
-  const std::optional<Interval> error = error_for(all, 3600);
-  ASSERT_TRUE(error.has_value());
+  const std::optional<Bought> bought = error_for(all, 3600, k_most_spp);
+  ASSERT_TRUE(bought.has_value());
+  EXPECT_FALSE(bought->capped);
+  const Interval* error = &bought->error;
   EXPECT_NEAR(forecast(all, {error->value, 1}).seconds.value, 3600, 0.1);
   EXPECT_NEAR(forecast(all, {error->high, 1}).seconds.high, 3600, 0.1);
   EXPECT_LT(error->low, error->value);
   EXPECT_LT(error->value, error->high);
   // Four times as long halves the error of what has little else to do.
-  EXPECT_NEAR(error_for(all, 4 * 3600)->value, error->value / 2, 0.01 * error->value);
-  EXPECT_FALSE(error_for(all, 1).has_value());
-  EXPECT_FALSE(error_for({}, 3600).has_value());
+  EXPECT_NEAR(error_for(all, 4 * 3600, k_most_spp)->error.value, error->value / 2,
+              0.01 * error->value);
+  EXPECT_FALSE(error_for(all, 1, k_most_spp).has_value());
+  EXPECT_FALSE(error_for({}, 3600, k_most_spp).has_value());
+}
+
+TEST(Forecast, ABudgetBuysNoMoreThanMaxSppAllows) {
+  // c / sqrt(n): with 64 samples all are at or below 0.2, in a few seconds.
+  ProbedWork done = work(10, {probe(0.1, 0.01, 4)});
+  done.work.trace = 0;
+  const std::vector<ProbedWork> all{work(10, {probe(0.1, 0.01, 0.8), probe(0.1, 0.01, 1.6)}), done};
+  const std::optional<Bought> bought = error_for(all, 3600, 64);
+  ASSERT_TRUE(bought.has_value());
+  EXPECT_TRUE(bought->capped);
+  for (const double error : {bought->error.value, bought->error.low, bought->error.high})
+    EXPECT_NEAR(error, 0.2, 1e-9);
+  const Forecast f = forecast(all, {bought->error.value, 0, 64});
+  EXPECT_EQ(f.pairs[0].capped, 0) << "every picture reaches it";
+  EXPECT_LT(f.seconds.value, 100);
+  EXPECT_NEAR(most_spp_for(all, 0.1), 256, 1e-6);
+  // A time that buys less is not bounded by it.
+  const std::optional<Bought> less = error_for(all, 4, 64);
+  ASSERT_TRUE(less.has_value());
+  EXPECT_FALSE(less->capped);
+  EXPECT_GT(less->error.value, 0.2);
+  EXPECT_NEAR(forecast(all, {less->error.value, 0, 64}).seconds.value, 4, 1e-3);
 }
 
 TEST(Forecast, SizesFollowTheirTrend) {
@@ -353,6 +383,10 @@ TEST_F(CalibrationTest, ProbesEngineErrorWhereItIsAskedFor) {
     }
   EXPECT_EQ(calibrated({}, false, true).measured, 0U);
   EXPECT_EQ(calibrated({}).measured, 0U);
+}
+
+TEST_F(CalibrationTest, WithoutMaxSppItsDefaultHolds) {
+  EXPECT_EQ(recipe({"engine.error=0.05"}).engine.target.value().max_spp, ErrorTarget{}.max_spp);
 }
 
 TEST_F(CalibrationTest, WorkIsWhatThePlanLeaves) {

@@ -78,15 +78,40 @@ class ForecastTest(TinyCase):
         self.assertEqual([path.name for path in (self.folder / "cache/dsbuild").glob("calibrating-*")], [])
 
     def test_a_smaller_error_takes_longer_and_a_budget_buys_it_back(self):
-        near, far = self.forecast("--error", "0.001"), self.forecast("--error", "0.1")
+        many = ("--set", "engine.error=0.5", "--set", "engine.max_spp=16777216")
+        near, far = self.forecast("--error", "0.001", *many), self.forecast("--error", "0.1", *many)
         self.assertGreater(near["seconds"]["value"], far["seconds"]["value"])
         for pair in near["pairs"]:
             self.assertGreater(pair["spp"], 16)
             self.assertAlmostEqual(pair["error"], 0.001, delta=1e-7)
+            self.assertEqual(pair["capped"], 0)
         for pair in far["pairs"]:
             self.assertEqual(pair["spp"], 16, "engine.error's first step is enough")
-        bought = self.forecast("--budget", f"{near['seconds']['value']:.6f}s")
+        bought = self.forecast("--budget", f"{near['seconds']['value']:.6f}s", *many)
         self.assertAlmostEqual(bought["error"]["value"], 0.001, delta=0.00005)
+        self.assertFalse(bought["capped"])
+
+    def test_max_spp_bounds_what_an_error_takes(self):
+        # 1024 where the recipe has samples in place of an error.
+        for most, settings in ((1024, ()), (64, ("--set", "engine.error=0.5", "--set", "engine.max_spp=64"))):
+            told = self.forecast("--error", "0.00001", *settings)
+            for pair in told["pairs"]:
+                self.assertEqual((pair["spp"], pair["capped"]), (most, 1))
+                self.assertGreater(pair["error"], 0.00001)
+            out = self.plan("--error", "0.00001", *settings).out
+            self.assertIn(f"with at most {most} samples a pixel (engine.max_spp)", out)
+            self.assertEqual(out.count("  capped\n"), len(told["pairs"]))
+            bought = self.forecast("--budget", "8h", *settings)
+            self.assertTrue(bought["capped"])
+            worst = max(pair["error"] for pair in told["pairs"])
+            self.assertGreater(bought["error"]["value"], 0.9 * worst)
+            for pair in bought["pairs"]:
+                self.assertLessEqual(pair["spp"], most + 1e-6)
+                self.assertEqual(pair["capped"], 0)
+            self.assertGreater(bought["more"]["max_spp"], most)
+            self.assertLess(bought["more"]["error"], bought["error"]["value"])
+            self.assertRegex(self.plan("--budget", "8h", *settings).out,
+                             rf"the least with engine.max_spp = {most} \(\d+ would buy [\d.e-]+ %\), on ")
 
     def test_text(self):
         out = self.plan("--error", "0.05").out
