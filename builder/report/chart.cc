@@ -56,13 +56,16 @@ class Drawing {
         if (is_shown(p)) values.push_back(p.y.value);
     return axis_for(chart_.y_label, chart_.y_scale, values);
   }
+  /// 0 to 1 along the axis.
+  static double share(const Axis& axis, double value) {
+    if (axis.scale != Scale::linear && value <= 0) return 0;
+    return std::clamp(axis.place(value), 0.0, 1.0);
+  }
   double x_at(double value) const {
-    return k_left + std::clamp(x_.place(value), 0.0, 1.0) * (k_width - k_left - k_right);
+    return k_left + share(x_, value) * (k_width - k_left - k_right);
   }
   double y_at(double value) const {
-    if (!shown(value, chart_.y_scale)) return k_height - k_bottom;
-    return k_height - k_bottom -
-           std::clamp(y_.place(value), 0.0, 1.0) * (k_height - k_top - k_bottom);
+    return k_height - k_bottom - share(y_, value) * (k_height - k_top - k_bottom);
   }
 
   void frame() {
@@ -99,27 +102,34 @@ class Drawing {
     if (line.size() > 1) svg_.polyline(line, css("line", series.style));
   }
 
+  /// Of the point at (x, y).
+  void draw_bar(const Interval& of, const Axis& axis, double x, double y, bool across,
+                const std::string& bar) {
+    const auto at = [&](double value) { return across ? x_at(value) : y_at(value); };
+    const double low = at(of.low);
+    const double high = at(of.high);
+    // A bar that the marker hides says nothing.
+    if (std::abs(high - low) <= 7) return;
+    if (across)
+      svg_.line(low, y, high, y, bar);
+    else
+      svg_.line(x, high, x, low, bar);
+    for (const double end : {of.low, of.high}) {
+      if (end < axis.low || end > axis.high) continue;
+      if (across)
+        svg_.line(at(end), y - k_cap, at(end), y + k_cap, bar);
+      else
+        svg_.line(x - k_cap, at(end), x + k_cap, at(end), bar);
+    }
+  }
+
   void draw_points(const ChartSeries& series) {
     for (const ChartPoint& p : series.points) {
       if (!is_shown(p)) continue;
       const double x = x_at(p.x.value);
       const double y = y_at(p.y.value);
-      const std::string bar = css("bar", series.style);
-      const double y1 = y_at(p.y.high);
-      const double y2 = y_at(p.y.low);
-      // A bar that the marker hides says nothing.
-      if (y2 - y1 > 7) {
-        svg_.line(x, y1, x, y2, bar);
-        svg_.line(x - k_cap, y1, x + k_cap, y1, bar);
-        svg_.line(x - k_cap, y2, x + k_cap, y2, bar);
-      }
-      const double x1 = shown(p.x.low, chart_.x_scale) ? x_at(p.x.low) : k_left;
-      const double x2 = x_at(p.x.high);
-      if (x2 - x1 > 7) {
-        svg_.line(x1, y, x2, y, bar);
-        svg_.line(x1, y - k_cap, x1, y + k_cap, bar);
-        svg_.line(x2, y - k_cap, x2, y + k_cap, bar);
-      }
+      draw_bar(p.x, x_, x, y, true, css("bar", series.style));
+      draw_bar(p.y, y_, x, y, false, css("bar", series.style));
       svg_.marker(x, y, series.style, css("mark", series.style),
                   fmt::format("{}: {} at {}", series.name, short_number(p.y.value),
                               short_number(p.x.value)));

@@ -11,7 +11,8 @@
 
 namespace ds {
 
-/// A point with its error bars; x without any where low = high.
+/// A point with its error bars; x without any where low = high. A bar whose bound lies beyond the
+/// axis, is infinite, or is 0 on a logarithmic axis, goes to the frame and has no cap there.
 struct ChartPoint {
   Interval x, y;
 };
@@ -39,8 +40,7 @@ struct Chart {
   std::vector<double> x_also, y_also;  ///< values the axes are to hold too
 };
 
-/// Points that a logarithmic axis cannot show (not above 0) are left out, and ends of their error
-/// bars cut at the frame.
+/// Points that a logarithmic axis cannot show (not above 0) are left out.
 std::string to_svg(const Chart& chart);
 
 /// Styles there are; beyond them series are told apart by more charts, not more colours.

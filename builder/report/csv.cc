@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace ds {
 namespace {
 
@@ -17,7 +19,7 @@ std::string field(const std::string& text) {
 }
 
 std::string number(std::optional<double> value) {
-  return value ? fmt::format("{}", *value) : "";
+  return value && std::isfinite(*value) ? fmt::format("{}", *value) : "";
 }
 
 /// One pair's lines.

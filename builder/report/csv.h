@@ -14,7 +14,8 @@ namespace ds {
 ///   metric       metric_name, "estimate", "seconds", "mask_rms", "bias", ...
 ///   spp          samples (geometry: rays) a pixel, or empty
 ///   seconds      of one picture at that spp, or empty
-///   value, low, high    low and high are 95 % bounds of errors, the range of times; or empty
+///   value, low, high    low and high are 95 % bounds of errors, the range of times; or empty:
+///                       no bound is known on that side
 /// Numbers have as many digits as they need; what could not be told has no line.
 std::string accuracy_csv(const Accuracy& accuracy);
 

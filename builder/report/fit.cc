@@ -6,9 +6,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace ds {
+namespace {
+
+constexpr double k_infinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
 
 double student_t95(int freedom) {
   DS_ASSERT(freedom >= 1);
@@ -54,8 +60,17 @@ Interval mean_interval(std::span<const double> values) {
   return {mean, mean - half, mean + half};
 }
 
+std::optional<Interval> mapped_interval(std::span<const double> values,
+                                        const std::function<double(double)>& f, double at_zero) {
+  const Interval mean = mean_interval(values);
+  if (!(mean.value > 0)) return std::nullopt;
+  const double one = mean.low > 0 ? f(mean.low) : at_zero;
+  const double other = f(mean.high);
+  return Interval{f(mean.value), std::min(one, other), std::max(one, other)};
+}
+
 Interval Line::slope_interval() const {
-  if (points < 3) return {slope, slope, slope};
+  if (points < 3) return {slope, -k_infinity, k_infinity};
   const double half = student_t95(points - 2) * residual / std::sqrt(sum_xx);
   return {slope, slope - half, slope + half};
 }
@@ -89,7 +104,7 @@ std::optional<Interval> PowerLaw::n_for(double target) const {
   DS_ASSERT(target > 0);
   if (line.slope >= 0) return std::nullopt;
   const double x = (std::log(target) - line.intercept) / line.slope;
-  double half = 0;
+  double half = k_infinity;
   if (line.points > 2)
     half = student_t95(line.points - 2) * line.residual / -line.slope *
            std::sqrt(1.0 / line.points + (x - line.mean_x) * (x - line.mean_x) / line.sum_xx);

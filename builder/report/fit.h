@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace ds {
 
-/// A value and the bounds it lies between with 95 % confidence.
+/// A value and the bounds it lies between with 95 % confidence: low <= value <= high. An infinite
+/// bound is an open end: nothing is known on that side.
 struct Interval {
   double value = 0, low = 0, high = 0;
 };
@@ -21,6 +23,12 @@ double deviation_of(std::span<const double> values);
 double median_of(std::vector<double> values);
 /// Mean of independent measurements and its interval; one value has no interval (low = high).
 Interval mean_interval(std::span<const double> values);
+/// The interval of f(mean) for a mean that cannot be below 0, though measurements of it can by
+/// chance; `f` rises or falls throughout above 0 and is not asked elsewhere. Where the mean's lower
+/// bound is not above 0, the end that it gives is `at_zero`, the limit of `f` there. Nothing where
+/// the mean itself is not above 0.
+std::optional<Interval> mapped_interval(std::span<const double> values,
+                                        const std::function<double(double)>& f, double at_zero);
 
 /// Least squares y = intercept + slope x.
 struct Line {
@@ -30,7 +38,7 @@ struct Line {
   int points = 0;
 
   double at(double x) const { return intercept + slope * x; }
-  /// Of the slope; without an interval for two points, through which every line goes.
+  /// Of the slope; open on both sides for two points: a line goes through them whatever they are.
   Interval slope_interval() const;
 };
 /// At least two points of different x, all finite.
@@ -43,7 +51,8 @@ struct PowerLaw {
 
   double error(double n) const;
   /// Where the error falls to `target`, with the interval that the scatter of the points leaves
-  /// (inverse prediction of the mean). Nothing where the error does not fall.
+  /// (inverse prediction of the mean); two points leave it open. Nothing where the error does not
+  /// fall.
   std::optional<Interval> n_for(double target) const;
 };
 /// Points whose error is not above 0 (lost in the reference's noise) are left out. Nothing where

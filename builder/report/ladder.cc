@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 
 namespace ds {
 namespace {
@@ -39,26 +41,9 @@ struct Samples {
       flip, estimate;
 };
 
-/// The interval of a function of a mean: `f` rises or falls throughout. Bounds that `f` has no
-/// value for are those of the mean.
-template <typename F>
-std::optional<Interval> mapped(const std::vector<double>& values, const F& f) {
-  const Interval mean = mean_interval(values);
-  const std::optional<double> value = f(mean.value);
-  if (!value) return std::nullopt;
-  const double one = f(mean.low).value_or(*value);
-  const double other = f(mean.high).value_or(*value);
-  return Interval{*value, std::min(one, other), std::max(one, other)};
-}
-
-std::optional<double> root(double square) {
-  if (square <= 0) return std::nullopt;
-  return std::sqrt(square);
-}
-
-std::optional<double> above_zero(double value) {
-  if (value <= 0) return std::nullopt;
-  return value;
+/// Bounds that chance put beyond what the metric can be, at its end.
+Interval cut(const Interval& interval, double least, double most) {
+  return {interval.value, std::max(interval.low, least), std::min(interval.high, most)};
 }
 
 Rung rung_of(int spp, const Samples& samples) {
@@ -69,12 +54,15 @@ Rung rung_of(int spp, const Samples& samples) {
   const auto put = [&](Metric metric, const std::optional<Interval>& interval) {
     if (interval) rung.metrics[metric] = *interval;
   };
-  put(Metric::error, mapped(samples.mean_square, root));
-  put(Metric::rel_mse, mapped(samples.rel_mse, above_zero));
-  put(Metric::rel_mse_trimmed, mapped(samples.rel_mse_trimmed, above_zero));
-  put(Metric::psnr_db, mapped(samples.picture_mean_square, psnr_db));
-  if (!samples.ssim.empty()) put(Metric::ssim, mean_interval(samples.ssim));
-  put(Metric::flip, mean_interval(samples.flip));
+  const auto root = [](double square) { return std::sqrt(square); };
+  const auto decibels = [](double square) { return psnr_db(square).value(); };
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  put(Metric::error, mapped_interval(samples.mean_square, root, 0));
+  put(Metric::rel_mse, mapped_interval(samples.rel_mse, std::identity(), 0));
+  put(Metric::rel_mse_trimmed, mapped_interval(samples.rel_mse_trimmed, std::identity(), 0));
+  put(Metric::psnr_db, mapped_interval(samples.picture_mean_square, decibels, infinity));
+  if (!samples.ssim.empty()) put(Metric::ssim, cut(mean_interval(samples.ssim), -1, 1));
+  put(Metric::flip, cut(mean_interval(samples.flip), 0, 1));
   if (!samples.estimate.empty()) rung.estimate = mean_of(samples.estimate);
   return rung;
 }

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace ds {
 namespace {
@@ -59,7 +60,8 @@ std::string summary_row(const PairAccuracy& pair) {
   if (pair.law) {
     const Interval slope = pair.law->line.slope_interval();
     row += cell(fmt::format("{:.2f}", slope.value),
-                fmt::format("{:.2f} to {:.2f}", slope.low, slope.high));
+                std::isfinite(slope.low) ? fmt::format("{:.2f} to {:.2f}", slope.low, slope.high)
+                                         : "no bounds");
   } else {
     row += "<td>none</td>";
   }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace ds {
@@ -31,6 +32,39 @@ TEST(Fit, MeanMedianAndDeviation) {
   const Interval one = mean_interval(Values{7});
   EXPECT_EQ(one.low, 7);
   EXPECT_EQ(one.high, 7);
+}
+
+TEST(Fit, AnEndThatChancePutBelowZeroIsOpen) {
+  const auto root = [](double square) { return std::sqrt(square); };
+  // Two seeds: 0.0044 +- 12.7 * 0.0020, far below 0.
+  const Values scattered{0.0024, 0.0064};
+  const Interval error = mapped_interval(scattered, root, 0).value();
+  EXPECT_NEAR(error.value, std::sqrt(0.0044), 1e-12);
+  EXPECT_EQ(error.low, 0);
+  EXPECT_NEAR(error.high, std::sqrt(0.0044 + 12.706 * 0.0020), 1e-9);
+
+  const double infinity = std::numeric_limits<double>::infinity();
+  const auto decibels = [](double square) { return -10 * std::log10(square); };
+  const Interval falling = mapped_interval(scattered, decibels, infinity).value();
+  EXPECT_EQ(falling.high, infinity);
+  EXPECT_LT(falling.low, falling.value);
+  EXPECT_LT(falling.value, 1000);
+
+  const Interval sure = mapped_interval(Values{4, 4.001, 3.999}, root, 0).value();
+  EXPECT_NEAR(sure.low, 2, 0.001);
+  EXPECT_LT(sure.low, sure.value);
+  EXPECT_FALSE(mapped_interval(Values{-0.001, 0.0005}, root, 0).has_value());
+}
+
+TEST(Fit, TwoPointsLeaveASlopeOpen) {
+  const Interval slope = fit_line(Values{1, 2}, Values{1, 3}).slope_interval();
+  EXPECT_EQ(slope.value, 2);
+  EXPECT_TRUE(std::isinf(slope.low) && slope.low < 0);
+  EXPECT_TRUE(std::isinf(slope.high) && slope.high > 0);
+  const Interval n = fit_power_law(Values{1, 4}, Values{0.4, 0.2})->n_for(0.1).value();
+  EXPECT_NEAR(n.value, 16, 1e-9);
+  EXPECT_EQ(n.low, 0);
+  EXPECT_TRUE(std::isinf(n.high));
 }
 
 TEST(Fit, LineIsThatOfScipy) {

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <regex>
 
 namespace ds {
 namespace {
@@ -113,6 +115,41 @@ TEST(Chart, LeavesOutWhatALogarithmCannotShow) {
   EXPECT_EQ(occurrences(svg, "class=\"mark"), 1U);
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
   EXPECT_THAT(svg, Not(HasSubstr("inf")));
+}
+
+/// (y of both ends) of every upright line of this class in the picture.
+std::vector<std::pair<double, double>> upright_lines(const std::string& svg,
+                                                     const std::string& css_class) {
+  std::vector<std::pair<double, double>> found;
+  const std::regex line("<line class=\"" + css_class +
+                        "\" x1=\"([^\"]*)\" y1=\"([^\"]*)\" x2=\"([^\"]*)\" y2=\"([^\"]*)\"");
+  for (std::sregex_iterator at(svg.begin(), svg.end(), line), end; at != end; ++at)
+    if ((*at)[1] == (*at)[3]) found.emplace_back(std::stod((*at)[2]), std::stod((*at)[4]));
+  return found;
+}
+
+TEST(Chart, AnOpenEndGoesToTheFrameWithoutACap) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  Chart chart;
+  chart.series.push_back({"psnr", 0, {{{1, 1, 1}, {30, 28, infinity}}}, true, {}});
+  chart.y_also = {20, 40};
+  const std::string linear = to_svg(chart);
+  ASSERT_EQ(upright_lines(linear, "bar s0").size(), 1U);
+  EXPECT_EQ(upright_lines(linear, "bar s0")[0].first, 26);  // the frame's top
+  EXPECT_EQ(occurrences(linear, "class=\"bar"), 2U);        // the bar and the cap of its lower end
+
+  chart.y_scale = Scale::log10;
+  chart.series[0].points = {{{1, 1, 1}, {30, 0, 35}}};
+  const std::string logarithmic = to_svg(chart);
+  ASSERT_EQ(upright_lines(logarithmic, "bar s0").size(), 1U);
+  EXPECT_EQ(upright_lines(logarithmic, "bar s0")[0].second, 184);  // the x axis
+  EXPECT_EQ(occurrences(logarithmic, "class=\"bar"), 2U);
+}
+
+TEST(Csv, AnOpenEndIsEmpty) {
+  Accuracy a = accuracy();
+  a.pairs[0].ladder[2].metrics[Metric::psnr_db] = {30, 28, std::numeric_limits<double>::infinity()};
+  EXPECT_THAT(accuracy_csv(a), HasSubstr(",psnr_db,4,1,30,28,\n"));
 }
 
 TEST(Csv, IsThatOfRfc4180AndHoldsEveryNumber) {
