@@ -59,6 +59,11 @@ int run_accuracy(const Arguments& arguments) {
   const std::atomic<bool>& stop = stop_on_signal();
   RealDisk disk;
   Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
+  if (!dataset.recipe.outputs.image)
+    fail(ErrorKind::usage,
+         "{}: wanted a recipe whose pictures are traced, found outputs.image = false; measure it "
+         "with --set outputs.image=true",
+         arguments.target);
   const fs::path report = arguments.report_file.empty()
                               ? fs::path(dataset.recipe.name + "-accuracy.html")
                               : fs::path(arguments.report_file);

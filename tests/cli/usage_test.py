@@ -37,6 +37,13 @@ class UsageTest(TinyCase):
             self.assertTrue(run.err.startswith("dsbuild: error: "), run)
             self.assertEqual(run.out, "")
 
+    def test_accuracy_wants_pictures(self):
+        run = self.run_it("accuracy", self.recipe, "--set", "outputs.image=false")
+        self.assertEqual(run.code, 2, run)
+        self.assertIn("found outputs.image = false; measure it with --set outputs.image=true", run.err)
+        self.assertEqual(run.out, "")
+        self.assertEqual(list(self.folder.glob("*accuracy*")), [])
+
     def test_a_wrong_recipe_names_each_place(self):
         self.edit("recipe.toml", "spp = 1", "spp = -1\nunknown = 3")
         run = self.run_it("plan", self.recipe)
