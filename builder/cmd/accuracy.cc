@@ -28,6 +28,7 @@ nlohmann::json to_json(const PairAccuracy& pair) {
                         {"image", pair.image},
                         {"images", pair.images}};
   if (pair.law) object["slope"] = interval_json(pair.law->line.slope_interval());
+  if (!pair.no_targets.empty()) object["no_targets"] = pair.no_targets;
   object["targets"] = nlohmann::json::array();
   for (const Target& target : pair.targets)
     object["targets"].push_back({{"error", target.error},

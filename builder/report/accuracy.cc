@@ -97,21 +97,6 @@ std::vector<GeometryRung> measure_geometry(SceneTracer& tracer, const Subject& s
   return rungs;
 }
 
-std::vector<Target> targets_of(const PairAccuracy& pair) {
-  std::vector<Target> targets;
-  if (!pair.law) return targets;
-  for (const double error : k_target_errors) {
-    const std::optional<Interval> spp = pair.law->n_for(error);
-    if (!spp) continue;
-    const auto seconds = [&](double n) { return std::max(0.0, pair.seconds.at(n)); };
-    targets.push_back({error,
-                       *spp,
-                       {seconds(spp->value), seconds(spp->low), seconds(spp->high)},
-                       spp->value < pair.law->least_n || spp->value > pair.law->most_n});
-  }
-  return targets;
-}
-
 void fit(PairAccuracy& pair) {
   std::vector<double> spp;
   std::vector<double> errors;
@@ -124,7 +109,7 @@ void fit(PairAccuracy& pair) {
   }
   pair.law = fit_power_law(spp, errors);
   pair.seconds = fit_line(spp, seconds);
-  pair.targets = targets_of(pair);
+  find_targets(pair);
 }
 
 Subject subject_of(const ImageSpec& image, const Recipe& recipe, Inputs& inputs) {
@@ -160,6 +145,32 @@ const char* metric_name(Metric metric) {
       return "flip";
   }
   assertion_failed("a Metric", __FILE__, __LINE__);
+}
+
+void find_targets(PairAccuracy& pair) {
+  pair.targets.clear();
+  pair.no_targets.clear();
+  if (!pair.law)
+    pair.no_targets = "its errors are lost in the reference's noise";
+  else if (!(pair.law->line.slope_interval().high < 0))
+    pair.no_targets = "the fall of its error is lost in the noise";
+  else if (!(pair.seconds.slope_interval().low > 0))
+    pair.no_targets = "the time of a sample is lost in the noise of the pictures' times";
+  if (!pair.no_targets.empty()) return;
+  for (const double error : k_target_errors) {
+    const Interval spp = pair.law->n_for(error).value();
+    const auto seconds = [&](double n) { return pair.seconds.interval_at(std::max(1.0, n)); };
+    // The line rises, so these are in order.
+    const Interval time{seconds(spp.value).value, std::max(0.0, seconds(spp.low).low),
+                        seconds(spp.high).high};
+    if (!(time.value > 0)) {
+      pair.no_targets = "the time of few samples is lost in the noise of the pictures' times";
+      pair.targets.clear();
+      return;
+    }
+    pair.targets.push_back(
+        {error, spp, time, spp.value < pair.law->least_n || spp.value > pair.law->most_n});
+  }
 }
 
 std::vector<PairChoice> representative_images(const std::vector<ImageSpec>& images) {

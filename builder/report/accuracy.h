@@ -86,7 +86,7 @@ struct ChoiceCost {
   std::optional<Interval> bias;
 };
 
-/// Where an error is reached.
+/// Where an error is reached. The bounds of `seconds` hold those of `spp` and those of the line.
 struct Target {
   double error = 0;
   Interval spp, seconds;
@@ -102,6 +102,7 @@ struct PairAccuracy {
   std::optional<PowerLaw> law;  ///< of Metric::error against spp
   Line seconds;                 ///< against spp
   std::vector<Target> targets;
+  std::string no_targets;          ///< why there are none; empty where there are
   double reference_error = 0;      ///< relative RMS of the reference, by its two halves
   std::map<Metric, double> floor;  ///< what SSIM and FLIP say of the reference's halves
   int plain_sums_spp = 0;
@@ -127,6 +128,10 @@ std::vector<PairChoice> representative_images(const std::vector<ImageSpec>& imag
 
 /// Errors that the report says the time of.
 inline constexpr std::array k_target_errors{0.05, 0.02, 0.01};
+
+/// Fills `targets` or `no_targets` from `law` and `seconds`. A picture has a sample a pixel at
+/// least, so no time is told of fewer.
+void find_targets(PairAccuracy& pair);
 
 /// Measures every pair of the recipe. `told` hears what is measured next. Throws Error(cancelled)
 /// soon after `stop` is set.

@@ -75,6 +75,14 @@ Interval Line::slope_interval() const {
   return {slope, slope - half, slope + half};
 }
 
+Interval Line::interval_at(double x) const {
+  double half = k_infinity;
+  if (points > 2)
+    half = student_t95(points - 2) * residual *
+           std::sqrt(1.0 / points + (x - mean_x) * (x - mean_x) / sum_xx);
+  return {at(x), at(x) - half, at(x) + half};
+}
+
 Line fit_line(std::span<const double> x, std::span<const double> y) {
   DS_ASSERT(x.size() == y.size() && x.size() >= 2);
   Line line;
@@ -104,10 +112,8 @@ std::optional<Interval> PowerLaw::n_for(double target) const {
   DS_ASSERT(target > 0);
   if (line.slope >= 0) return std::nullopt;
   const double x = (std::log(target) - line.intercept) / line.slope;
-  double half = k_infinity;
-  if (line.points > 2)
-    half = student_t95(line.points - 2) * line.residual / -line.slope *
-           std::sqrt(1.0 / line.points + (x - line.mean_x) * (x - line.mean_x) / line.sum_xx);
+  const Interval there = line.interval_at(x);
+  const double half = (there.high - there.value) / -line.slope;
   return Interval{std::exp(x), std::exp(x - half), std::exp(x + half)};
 }
 

@@ -38,6 +38,9 @@ struct Line {
   int points = 0;
 
   double at(double x) const { return intercept + slope * x; }
+  /// Of the line at `x`: what the scatter of the points leaves of the mean there; open on both
+  /// sides for two points.
+  Interval interval_at(double x) const;
   /// Of the slope; open on both sides for two points: a line goes through them whatever they are.
   Interval slope_interval() const;
 };

@@ -32,18 +32,18 @@ std::string cell(const std::string& value, const std::string& bounds) {
   return "<td>" + value + (bounds.empty() ? "" : " <small>" + bounds + "</small>") + "</td>";
 }
 
-const Target* target_of(const PairAccuracy& pair, double error) {
-  const auto found = std::find_if(pair.targets.begin(), pair.targets.end(),
-                                  [&](const Target& target) { return target.error == error; });
-  return found == pair.targets.end() ? nullptr : &*found;
-}
-
-std::string target_cell(const PairAccuracy& pair, double error) {
-  const Target* target = target_of(pair, error);
-  if (target == nullptr) return "<td>not reached</td>";
-  const std::string value = duration(target->seconds.value);
-  return cell(target->extrapolated ? "<span class=\"far\">" + value + " *</span>" : value,
-              duration(target->seconds.low) + " to " + duration(target->seconds.high));
+/// One cell a target, or one for all of them that says why there is none.
+std::string target_cells(const PairAccuracy& pair) {
+  if (pair.targets.empty())
+    return fmt::format("<td class=\"why\" colspan=\"{}\">not told: {}</td>", k_target_errors.size(),
+                       escaped(pair.no_targets));
+  std::string cells;
+  for (const Target& target : pair.targets) {
+    const std::string value = duration(target.seconds.value);
+    cells += cell(target.extrapolated ? "<span class=\"far\">" + value + " *</span>" : value,
+                  duration(target.seconds.low) + " to " + duration(target.seconds.high));
+  }
+  return cells;
 }
 
 std::string summary_row(const PairAccuracy& pair) {
@@ -65,9 +65,7 @@ std::string summary_row(const PairAccuracy& pair) {
   } else {
     row += "<td>none</td>";
   }
-  for (const double target : k_target_errors)
-    row += target_cell(pair, target);
-  return row + "</tr>\n";
+  return row + target_cells(pair) + "</tr>\n";
 }
 
 std::string summary_table(const Accuracy& accuracy) {

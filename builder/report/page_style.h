@@ -38,6 +38,7 @@ tbody tr:nth-child(even) { background: var(--stripe); }
 tbody td { border-bottom: 1px solid var(--grid); }
 td small { color: var(--soft); font-size: 11.5px; display: block; line-height: 1.2; }
 td .far { font-style: italic; }
+td.why { color: var(--soft); font-size: 12.5px; white-space: normal; min-width: 21ch; }
 p.note { color: var(--soft); font-size: 13px; }
 figure { margin: 12px 0 22px; }
 figure .plots { display: flex; flex-wrap: wrap; align-items: flex-start; gap: 10px; }

@@ -186,6 +186,55 @@ TEST(Ladder, EndsAtWhatWasAskedFor) {
   EXPECT_THAT(ladder_of(1), ElementsAre(1));
 }
 
+PairAccuracy with_times(const std::vector<double>& seconds) {
+  const std::vector<double> spp{1, 2, 4, 8, 16};
+  PairAccuracy pair;
+  pair.law = fit_power_law(spp, std::vector<double>{0.11, 0.065, 0.055, 0.033, 0.026});
+  pair.seconds = fit_line(spp, seconds);
+  find_targets(pair);
+  return pair;
+}
+
+TEST(Targets, LieWithinTheirBounds) {
+  // The last overhead is by chance so small that the line is below 0 at no samples.
+  for (const std::vector<double>& seconds :
+       {std::vector<double>{0.0011, 0.0021, 0.0038, 0.0082, 0.0159},
+        std::vector<double>{0.0009, 0.0017, 0.0036, 0.0079, 0.0172}}) {
+    const PairAccuracy pair = with_times(seconds);
+    EXPECT_EQ(pair.no_targets, "");
+    ASSERT_EQ(pair.targets.size(), k_target_errors.size());
+    for (const Target& target : pair.targets)
+      for (const Interval& interval : {target.spp, target.seconds}) {
+        EXPECT_GE(interval.low, 0);
+        EXPECT_LT(interval.low, interval.value);
+        EXPECT_LT(interval.value, interval.high);
+      }
+    EXPECT_LT(pair.targets[0].seconds.value, pair.targets[1].seconds.value);
+  }
+}
+
+TEST(Targets, AreNotToldWhereTheTimeOfASampleIsLostInTheNoise) {
+  for (const std::vector<double>& seconds :
+       {std::vector<double>{0.0036, 0.0035, 0.0034, 0.0031, 0.0024},     // falls
+        std::vector<double>{0.0030, 0.0051, 0.0024, 0.0047, 0.0041}}) {  // anything
+    const PairAccuracy pair = with_times(seconds);
+    EXPECT_TRUE(pair.targets.empty());
+    EXPECT_THAT(pair.no_targets, testing::HasSubstr("the time of a sample is lost"));
+  }
+}
+
+TEST(Targets, AreNotToldWhereTheErrorIsLostInTheNoise) {
+  PairAccuracy pair;
+  find_targets(pair);
+  EXPECT_THAT(pair.no_targets, testing::HasSubstr("lost in the reference's noise"));
+  const std::vector<double> spp{1, 2, 4};
+  pair.law = fit_power_law(spp, std::vector<double>{0.2, 0.3, 0.19});
+  pair.seconds = fit_line(spp, std::vector<double>{1, 2, 4});
+  find_targets(pair);
+  EXPECT_TRUE(pair.targets.empty());
+  EXPECT_THAT(pair.no_targets, testing::HasSubstr("the fall of its error is lost"));
+}
+
 TEST(RepresentativeImages, OneForEachPairWhateverTheOrder) {
   const Recipe recipe = read_recipe(DS_SOURCE_DIR "/tests/data/tiny/recipe.toml", {});
   std::vector<ImageSpec> images = expand(recipe);

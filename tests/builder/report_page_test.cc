@@ -185,6 +185,18 @@ TEST(Page, NeedsNothingElse) {
   EXPECT_THAT(page, HasSubstr("download=\"mugs.csv\" href=\"data:text/csv;charset=utf-8;base64,"));
 }
 
+TEST(Page, SaysWhyThereIsNoTime) {
+  Accuracy a = accuracy();
+  a.pairs[0].targets.clear();
+  a.pairs[0].no_targets = "a reason";
+  a.pairs[1].targets = {{0.05, {100, 90, 110}, {25, 22.5, 27.5}, false},
+                        {0.02, {100, 90, 110}, {25, 22.5, 27.5}, true},
+                        {0.01, {100, 90, 110}, {25, 22.5, 27.5}, true}};
+  const std::string page = accuracy_page(a, Against::both, "", "r.csv");
+  EXPECT_THAT(page, HasSubstr("colspan=\"3\">not told: a reason</td></tr>"));
+  EXPECT_EQ(occurrences(page, "<small>22.5 s to 27.5 s</small>"), 3U);
+}
+
 TEST(Page, NoChartHoldsMoreThanItCanTellApart) {
   Accuracy a = accuracy();
   for (int i = 0; i < 8; ++i)
