@@ -214,7 +214,10 @@ Accuracy measure_accuracy(const Recipe& recipe, Inputs& inputs, SceneTracer& tra
     measure_ladder(pair, tracer, subject, tone_map, accuracy.options, stop);
     fit(pair);
     pair.geometry = measure_geometry(tracer, subject);
-    if (options.choices) pair.choices = measure_choices(tracer, subject, accuracy.options, stop);
+    if (options.choices) {
+      pair.choices = measure_choices(tracer, subject, accuracy.options, stop);
+      pair.kept = effect_choices(subject).kept;
+    }
     accuracy.pairs.push_back(std::move(pair));
   }
   return accuracy;

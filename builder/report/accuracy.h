@@ -4,6 +4,7 @@
 #include "builder/build/inputs.h"
 #include "builder/recipe/recipe.h"
 #include "builder/report/choices.h"
+#include "builder/report/effect_choices.h"
 #include "builder/report/fit.h"
 #include "builder/report/geometry_errors.h"
 #include "builder/report/image_errors.h"
@@ -109,6 +110,7 @@ struct PairAccuracy {
   double plain_sums = 0;  ///< error that plain float sums would add, at plain_sums_spp
   std::vector<GeometryRung> geometry;
   std::vector<ChoiceCost> choices;
+  std::vector<KeptEffect> kept;  ///< effects that none of them leaves out
 };
 
 struct Accuracy {

@@ -38,14 +38,7 @@ inline constexpr int k_deepest = 16;
 
 /// Everything about this subject that could be chosen otherwise, beside what it has: the other
 /// arithmetic; paths of 2 to 16 vertices; filters of 0 (one sharp pixel) to 6 pixels; unfiltered
-/// images where a material shows one; and each effect the scene has, left out:
-///   lens                a pinhole instead
-///   light NAME          a light, or a material that emits, dark
-///   texture NAME        a texture that a material takes straight, as its mean over the surfaces
-///   smooth normals      every triangle flat
-///   coat of NAME        a glossy2 material as a matte one of the same base
-///   mixing of NAME      a mix as its first material
-///   hidden objects      what camera rays pass through is seen
+/// images where a material shows one; and those of effect_choices.
 std::vector<Choice> choices_for(const Subject& subject);
 
 }  // namespace ds

@@ -133,6 +133,22 @@ std::string sums_text(const Accuracy& accuracy) {
       percent(least), percent(most), accuracy.pairs.front().plain_sums_spp);
 }
 
+/// "Never left out with red-plastic: light spot, since without it the scene is dark." A line a
+/// material.
+std::string kept_text(const std::vector<const PairAccuracy*>& group) {
+  std::string text;
+  for (const PairAccuracy* pair : group) {
+    std::string kept;
+    for (const KeptEffect& effect : pair->kept)
+      kept += (kept.empty() ? "" : "; ") + effect.effect.sort + " " + effect.effect.name +
+              ", since " + effect.why;
+    if (!kept.empty())
+      text += (text.empty() ? "" : "<br>") +
+              escaped("Never left out with " + pair->material + ": " + kept + ".");
+  }
+  return text.empty() ? "" : "<figcaption>" + text + "</figcaption>";
+}
+
 std::string choices_section(const Accuracy& accuracy) {
   std::string html;
   const ChoiceAxes axes = choice_axes(accuracy);
@@ -146,7 +162,8 @@ std::string choices_section(const Accuracy& accuracy) {
     }
     if (plots.empty()) continue;
     html += "<h3>" + escaped(group.front()->environment) +
-            "</h3>\n<figure class=\"choices\"><div class=\"plots\">" + plots + "</div></figure>\n";
+            "</h3>\n<figure class=\"choices\"><div class=\"plots\">" + plots + "</div>" +
+            kept_text(group) + "</figure>\n";
   }
   if (html.empty()) return "";
   return "<h2>What each choice costs</h2>\n<p>Each row changes one thing and keeps the samples: "

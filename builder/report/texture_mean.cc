@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/report/texture_mean.h"
 
+#include "builder/report/spread.h"
 #include "tracer/kernels/lists.h"
 
 // Every texture, numbered as the rows of texture_types().
@@ -69,25 +70,25 @@ struct Patch {
   double area_until;  ///< of all patches up to and with this one
 };
 
+/// As uses_texture, of a material or of what it is mixed of.
+bool shows_texture(const Scene& scene, int material, int texture) {
+  if (material < 0) return false;
+  const Material& m = scene.materials[static_cast<std::size_t>(material)];
+  return uses_texture(m, texture) || shows_texture(scene, m.children[0], texture) ||
+         shows_texture(scene, m.children[1], texture);
+}
+
 std::vector<Patch> patches_with(const Scene& scene, int texture) {
   std::vector<Patch> patches;
   double sum = 0;
   for (const Object& object : scene.objects) {
-    if (object.material < 0 ||
-        !uses_texture(scene.materials[static_cast<std::size_t>(object.material)], texture))
-      continue;
+    if (!shows_texture(scene, object.material, texture)) continue;
     for (const auto& corners : object.mesh.triangles) {
       sum += area(object.mesh, corners);
       patches.push_back({&object.mesh, corners, sum});
     }
   }
   return patches;
-}
-
-/// Fraction of i times an irrational number: the points of a Kronecker sequence.
-double spread(int i, double step) {
-  const double x = i * step;
-  return x - std::floor(x);
 }
 
 }  // namespace

@@ -185,6 +185,13 @@ TEST(Page, NeedsNothingElse) {
   EXPECT_THAT(page, HasSubstr("download=\"mugs.csv\" href=\"data:text/csv;charset=utf-8;base64,"));
 }
 
+TEST(Page, SaysWhichEffectsNoChoiceLeavesOut) {
+  Accuracy a = accuracy();
+  a.pairs[1].kept.push_back({{"light", "spot", true, "light lamp"}, "a reason"});
+  EXPECT_THAT(accuracy_page(a, Against::both, "", "r.csv"),
+              HasSubstr("<figcaption>Never left out with clay: light spot, since a reason."));
+}
+
 TEST(Page, SaysWhyThereIsNoTime) {
   Accuracy a = accuracy();
   a.pairs[0].targets.clear();
