@@ -76,12 +76,10 @@ void add_textures(Choices& choices, const Scene& scene) {
   }
 }
 
-/// What a matte material of the same look reflects: the material's own diffuse reflectance with its
-/// texture, else its albedo where each textured input is at its mean.
-TextureRef matte_colour(const Scene& scene, const Material& material) {
+/// What a matte material in place of one without `kd` reflects: the albedo of this one where each
+/// textured input is at its mean.
+Vec3 matte_colour(const Scene& scene, const Material& material) {
   const NodeType& row = type_of(material);
-  const int kd = find_input(row, "kd");
-  if (kd >= 0) return material.inputs[index(kd)];
   Material even = material;
   for (std::size_t i = 0; i < even.inputs.size(); ++i) {
     TextureRef& input = even.inputs[i];
@@ -90,7 +88,7 @@ TextureRef matte_colour(const Scene& scene, const Material& material) {
     const std::optional<Vec3> mean = texture_mean(scene, input.texture, k_mean_points);
     input = {mean.value_or(Vec3{value, value, value}), -1};
   }
-  return {material_albedo(even), -1};
+  return material_albedo(even);
 }
 
 /// Keeps what it emits.
@@ -122,9 +120,17 @@ void add_materials(Choices& choices, const Scene& scene, const std::vector<bool>
           [i](Subject& s) { s.scene.materials[i] = first_part(s.scene, s.scene.materials[i]); });
       continue;
     }
-    add(choices, name, [i, colour = matte_colour(scene, material)](Subject& s) {
-      s.scene.materials[i] = as_matte(s.scene.materials[i], colour);
-    });
+    // Read when it is applied: its texture may have been left out before.
+    const int kd = find_input(type_of(material), "kd");
+    if (kd >= 0)
+      add(choices, name, [i, kd](Subject& s) {
+        Material& m = s.scene.materials[i];
+        m = as_matte(m, m.inputs[index(kd)]);
+      });
+    else
+      add(choices, name, [i, colour = matte_colour(scene, material)](Subject& s) {
+        s.scene.materials[i] = as_matte(s.scene.materials[i], {colour, -1});
+      });
   }
 }
 

@@ -163,6 +163,17 @@ TEST(EffectChoices, SeveralOfAKindAreLeftOutTogetherToo) {
               testing::IsSupersetOf({"light bulb", "light lamp", "point lights"}));
 }
 
+TEST(EffectChoices, ATextureOfSeveralMaterialsGoesWhateverElseIsLeftOut) {
+  Subject s = subject();
+  const int other = pictures::add_texture(s.scene, "checkerboard3d", {});
+  s.scene.textures[static_cast<std::size_t>(other)].name = "other";
+  s.scene.materials[1].inputs[0].texture = other;  // the kd of a material that goes too
+  const EffectChoices found = effect_choices(s);
+  EXPECT_THAT(names(found.choices, k_effect_group), Contains("checkerboard3d textures"));
+  for (const KeptEffect& kept : found.kept)
+    EXPECT_NE(kept.effect.sort, "texture") << kept.why;
+}
+
 TEST(MaterialAlbedo, IsWhatComesBack) {
   for (const NodeType& type : material_types()) {
     if (type.name == "mix") continue;
