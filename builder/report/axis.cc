@@ -10,9 +10,6 @@
 namespace ds {
 namespace {
 
-/// More labels than this run into each other.
-constexpr int k_most_labels = 8;
-
 double logarithm(double value, Scale scale) {
   return scale == Scale::log2 ? std::log2(value) : std::log10(value);
 }
@@ -29,21 +26,21 @@ void widen_log(Axis& axis) {
   axis.high = middle * std::sqrt(base);
 }
 
-std::vector<Tick> powers_of_two(double low, double high) {
+std::vector<Tick> powers_of_two(double low, double high, int most_labels) {
   std::vector<Tick> ticks;
   const int first = static_cast<int>(std::ceil(std::log2(low) - 1e-9));
   const int last = static_cast<int>(std::floor(std::log2(high) + 1e-9));
-  const int step = (last - first) / k_most_labels + 1;
+  const int step = (last - first) / most_labels + 1;
   for (int e = first; e <= last; ++e)
     ticks.push_back(
         {std::ldexp(1, e), (e - first) % step == 0 ? short_number(std::ldexp(1, e)) : ""});
   return ticks;
 }
 
-std::vector<Tick> decades(double low, double high) {
+std::vector<Tick> decades(double low, double high, int most_labels) {
   std::vector<Tick> ticks;
   const double span = std::log10(high / low);
-  const int step = static_cast<int>(span) / k_most_labels + 1;
+  const int step = static_cast<int>(span) / most_labels + 1;
   int exponent = static_cast<int>(std::floor(std::log10(low)));
   for (; std::pow(10, exponent) <= high * 1.000001; ++exponent)
     for (const int factor : {1, 2, 5}) {
@@ -65,9 +62,9 @@ double nice_step(double range) {
 }
 
 void fit_linear(Axis& axis) {
-  if (axis.high - axis.low <= 1e-12 * std::max(std::abs(axis.low), std::abs(axis.high)) ||
-      axis.low == axis.high) {
-    const double room = axis.low == 0 ? 1 : std::abs(axis.low) * 0.5;
+  if (axis.low == 0 && axis.high == 0) axis.high = 1;
+  if (axis.high - axis.low <= 1e-12 * std::max(std::abs(axis.low), std::abs(axis.high))) {
+    const double room = std::abs(axis.low) * 0.5;
     axis.low -= room;
     axis.high += room;
   }
@@ -88,7 +85,8 @@ double Axis::place(double value) const {
          (logarithm(high, scale) - logarithm(low, scale));
 }
 
-Axis axis_for(const std::string& label, Scale scale, const std::vector<double>& values) {
+Axis axis_for(const std::string& label, Scale scale, const std::vector<double>& values,
+              int most_labels) {
   Axis axis{label, scale, 0, 1, {}};
   if (scale != Scale::linear) {
     axis.low = 1;
@@ -105,8 +103,8 @@ Axis axis_for(const std::string& label, Scale scale, const std::vector<double>& 
   }
   DS_ASSERT(axis.low > 0);
   widen_log(axis);
-  axis.ticks =
-      scale == Scale::log2 ? powers_of_two(axis.low, axis.high) : decades(axis.low, axis.high);
+  axis.ticks = scale == Scale::log2 ? powers_of_two(axis.low, axis.high, most_labels)
+                                    : decades(axis.low, axis.high, most_labels);
   return axis;
 }
 

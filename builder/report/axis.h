@@ -25,8 +25,11 @@ struct Axis {
 };
 
 /// An axis that holds all values with a little room, from tick to tick where it is linear. Values
-/// must be finite, and above 0 for logarithmic scales; without any the axis is 0 to 1 (1 to 10).
-Axis axis_for(const std::string& label, Scale scale, const std::vector<double>& values);
+/// must be finite, and above 0 for logarithmic scales; without any the axis is 0 to 1 (1 to 10). Of
+/// a logarithmic axis' ticks about `most_labels` are named: more run into each other where an axis
+/// is as long as a chart is wide.
+Axis axis_for(const std::string& label, Scale scale, const std::vector<double>& values,
+              int most_labels = 8);
 
 /// "0.02", "3", "1500", "2e-07": at most three significant digits.
 std::string short_number(double value);

@@ -13,6 +13,9 @@ namespace {
 constexpr double k_width = 526, k_top = 46, k_row = 17, k_bottom = 40;
 /// Both columns, left to right edge.
 constexpr double k_time_left = 176, k_time_right = 332, k_bias_left = 356, k_bias_right = 504;
+/// A column is less than half as wide as a chart, and shares of a strict and a fast picture are as
+/// small as "1e-06".
+constexpr int k_bias_labels = 3;
 /// A label of more characters would run into the first column.
 constexpr std::size_t k_longest_label = 30;
 
@@ -100,7 +103,7 @@ ChoiceAxes choice_axes(const Accuracy& accuracy) {
       if (cost.bias) biases.push_back(100 * cost.bias->value);
     }
   return {axis_for("ratio", Scale::linear, times),
-          axis_for("relative RMS (%)", Scale::log10, biases)};
+          axis_for("relative RMS (%)", Scale::log10, biases, k_bias_labels)};
 }
 
 std::string choice_chart(const std::string& title, const std::vector<ChoiceCost>& costs,

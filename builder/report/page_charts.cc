@@ -103,13 +103,14 @@ std::string ladder_chart(const Group& group, const Display& display, std::option
 }
 
 Chart geometry_chart(const Group& group, std::optional<TimeUnit> time, const char* title,
-                     const char* label, double GeometryErrors::*error) {
+                     const char* label, Scale scale, double GeometryErrors::*error) {
   Chart chart;
   chart.title = fmt::format("{} against {}", title, time ? "time" : "rays");
   chart.x_label = time ? fmt::format("time of a mask ({})", time->name) : "rays a pixel";
   chart.y_label = label;
   chart.x_scale = time ? Scale::log10 : Scale::log2;
-  chart.y_scale = Scale::log10;
+  chart.y_scale = scale;
+  if (scale == Scale::linear) chart.y_also = {0};
   for (std::size_t i = 0; i < group.size(); ++i) {
     ChartSeries series{group[i]->material, static_cast<int>(i), {}, true, {}};
     for (const GeometryRung& rung : group[i]->geometry)
@@ -223,12 +224,13 @@ std::string geometry_section(const Accuracy& accuracy, Against against) {
       "model, and with the pixel's mean depth, by up to 256 rays a pixel. A mask's pixel is wrong "
       "where less than half of it is what the mask says.</p>\n";
   for (const Group& group : by_environment(accuracy)) {
+    // Often no pixel is wrong, which a logarithm cannot show.
     const auto plots = each_axis(against, time, [&](const std::optional<TimeUnit>& unit) {
-      return to_svg(geometry_chart(group, unit, "Mask error", "RMS of the share (%)",
+      return to_svg(geometry_chart(group, unit, "Mask error", "RMS of the share (%)", Scale::log10,
                                    &GeometryErrors::mask_rms)) +
              to_svg(geometry_chart(group, unit, "Wrong mask pixels", "share of the pixels (%)",
-                                   &GeometryErrors::mask_wrong)) +
-             to_svg(geometry_chart(group, unit, "Depth error", "relative RMS (%)",
+                                   Scale::linear, &GeometryErrors::mask_wrong)) +
+             to_svg(geometry_chart(group, unit, "Depth error", "relative RMS (%)", Scale::log10,
                                    &GeometryErrors::depth_rms));
     });
     html += figure(group, plots);

@@ -79,6 +79,7 @@ TEST(Axis, TicksAreRoundNumbersWithin) {
               testing::ElementsAre("1", "2", "5", "10"));
   EXPECT_LE(labels(axis_for("", Scale::log2, {1, 1 << 20})).size(), 9U);
   EXPECT_LE(labels(axis_for("", Scale::log10, {1e-20, 1e20})).size(), 10U);
+  EXPECT_LE(labels(axis_for("", Scale::log10, {1e-6, 100}, 3)).size(), 4U);
 }
 
 TEST(Axis, PlacesValues) {
@@ -88,7 +89,21 @@ TEST(Axis, PlacesValues) {
   EXPECT_NEAR(logarithmic.place(1), 0.5, 1e-12);
 }
 
+TEST(Page, ShowsMasksWithoutAWrongPixel) {
+  Accuracy a = accuracy();
+  a.pairs.resize(1);
+  a.pairs[0].geometry = {{1, 0.5, {0.1, 0, 0.1}}, {4, 0.7, {0.05, 0, 0.05}}};
+  const std::string page = accuracy_page(a, Against::spp, "", "r.csv");
+  const std::size_t chart = page.find("<title>Wrong mask pixels against rays");
+  ASSERT_NE(chart, page.npos);
+  EXPECT_EQ(occurrences(page.substr(chart, page.find("</svg>", chart) - chart), "class=\"mark"),
+            2U);
+}
+
 TEST(Axis, HoldsOneValueAndNone) {
+  EXPECT_THAT(labels(axis_for("", Scale::linear, {0, 0})),
+              testing::ElementsAre("0", "0.2", "0.4", "0.6", "0.8", "1"));
+
   for (const Scale scale : {Scale::linear, Scale::log2, Scale::log10}) {
     const Axis one = axis_for("", scale, {3});
     EXPECT_GT(one.place(3), 0);
