@@ -70,6 +70,8 @@ class RealSceneTracer : public SceneTracer {
 /// Most rays of a supersampled mask: its tables then take about 300 MB.
 constexpr double k_most_geometry_rays = 4096.0 * 4096.0;
 constexpr int k_most_side = 16384;
+/// Of each size, all alike: one of a millisecond may take five by chance.
+constexpr int k_mask_pictures = 5;
 
 int finest_factor(int width, int height) {
   int factor = 16;
@@ -90,9 +92,14 @@ std::vector<GeometryRung> measure_geometry(SceneTracer& tracer, const Subject& s
   const Coverage reference = traced(finest);  // compiles the program too, before any time is taken
   std::vector<GeometryRung> rungs;
   for (int factor = 1; factor < finest; factor *= 2) {
-    const double start = tracer.now();
-    const Coverage coverage = traced(factor);
-    rungs.push_back({factor * factor, tracer.now() - start, geometry_errors(coverage, reference)});
+    std::vector<double> seconds;
+    Coverage coverage;
+    for (int i = 0; i < k_mask_pictures; ++i) {
+      const double start = tracer.now();
+      coverage = traced(factor);
+      seconds.push_back(tracer.now() - start);
+    }
+    rungs.push_back({factor * factor, median_of(seconds), geometry_errors(coverage, reference)});
   }
   return rungs;
 }

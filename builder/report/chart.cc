@@ -11,7 +11,7 @@ namespace ds {
 namespace {
 
 constexpr double k_width = 350, k_height = 226;
-constexpr double k_left = 56, k_right = 16, k_top = 26, k_bottom = 42;
+constexpr double k_left = 56, k_right = 26, k_top = 26, k_bottom = 42;
 constexpr double k_cap = 2.5;  ///< half the width of an error bar's end
 
 std::string css(const char* kind, int style) {
@@ -89,7 +89,7 @@ class Drawing {
     if (guide.y < y_.low || guide.y > y_.high) return;
     const double y = y_at(guide.y);
     svg_.line(k_left, y, k_width - k_right, y, "guide");
-    svg_.text(k_width - k_right, y - 3, Anchor::end, "guide-text", guide.label);
+    svg_.text(k_width - k_right + 3, y + 3.5, Anchor::start, "guide-text", guide.label);
   }
 
   void draw_lines(const ChartSeries& series) {

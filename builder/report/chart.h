@@ -25,7 +25,7 @@ struct ChartSeries {
   std::vector<std::pair<double, double>> fit;  ///< ends of a line that is drawn through them
 };
 
-/// A dashed line across the chart at a y, named at its end.
+/// A dashed line across the chart at a y, named right of the frame.
 struct ChartGuide {
   double y = 0;
   std::string label;
