@@ -41,6 +41,9 @@ std::string error_of(const Picture& p) {
   return "no error";
 }
 
+/// Indices that no list has.
+const std::vector<float> k_no_index = {-2, 1000};
+
 struct Spoiler {
   const char* name;
   std::function<void(Picture&, float)> spoil;
@@ -48,8 +51,8 @@ struct Spoiler {
   std::vector<float> values = {k_nan, k_infinity, -k_infinity};
 };
 
-const std::vector<Spoiler>& spoilers() {
-  static const std::vector<Spoiler> all = {
+std::vector<Spoiler> mesh_spoilers() {
+  return {
       {"vertex",
        [](Picture& p, float x) { p.scene.objects[0].mesh.positions[7].y = x; },
        "vertex 7 must be finite and within 1e+18",
@@ -58,11 +61,45 @@ const std::vector<Spoiler>& spoilers() {
        "normal 5 must be finite"},
       {"uv", [](Picture& p, float x) { p.scene.objects[0].mesh.uvs[3].x = x; },
        "uv 3 must be finite"},
+      {"index",
+       [](Picture& p, float) {
+         p.scene.objects[0].mesh.triangles[9][1] =
+             static_cast<std::uint32_t>(p.scene.objects[0].mesh.positions.size());
+       },
+       "a triangle's index must be below",
+       {0}},
+      {"object's material", [](Picture& p, float x) { p.scene.objects[0].material = int(x); },
+       "its material must be one of 1, got", k_no_index},
+  };
+}
+
+std::vector<Spoiler> material_spoilers() {
+  return {
       {"material",
        [](Picture& p, float x) {
          pictures::set_input(p.scene, 0, "kd", {x, 0, 0});
        },
        "material matte: a value must be finite"},
+      {"material's number",
+       [](Picture& p, float x) {
+         p.scene.materials[static_cast<std::size_t>(pictures::add_material(p.scene, "glossy2"))]
+             .numbers[1] = x;
+       },
+       "material glossy2: a number must be finite"},
+      {"mix",
+       [](Picture& p, float x) {
+         pictures::add_matte(p.scene, {1, 1, 1});
+         pictures::set_input(p.scene, pictures::add_material(p.scene, "mix"), "amount", {x, x, x});
+       },
+       "material mix: a value must be finite"},
+      {"part of a mix",
+       [](Picture& p, float x) {
+         pictures::add_matte(p.scene, {1, 1, 1});
+         pictures::add_material(p.scene, "mix");
+         p.scene.materials.back().children[1] = int(x);
+       },
+       "material mix: a part must be one of the 2 before it",
+       {2, 3, -7}},
       {"emission",
        [](Picture& p, float x) {
          p.scene.materials[0].emits = true;
@@ -70,6 +107,53 @@ const std::vector<Spoiler>& spoilers() {
        },
        "emission must be finite and not negative",
        {k_nan, k_infinity, -1}},
+      {"texture of an input",
+       [](Picture& p, float x) { p.scene.materials[0].inputs[0].texture = int(x); },
+       "material matte: an input's texture must be one of 0, got", k_no_index},
+  };
+}
+
+/// Of a matte whose colour is the scale of a marble.
+Texture& scale_of(Picture& p) {
+  const int marble = pictures::add_texture(p.scene, "marble", {});
+  p.scene.materials[0].inputs[0].texture =
+      pictures::add_texture(p.scene, "scale", {{1, 1, 1}, marble});
+  return p.scene.textures.back();
+}
+
+std::vector<Spoiler> texture_spoilers() {
+  return {
+      {"texture's constant", [](Picture& p, float x) { scale_of(p).inputs[1].constant.y = x; },
+       "texture scale: a value must be finite"},
+      {"texture's number",
+       [](Picture& p, float x) {
+         scale_of(p);
+         p.scene.textures[0].numbers[2] = x;
+       },
+       "texture marble: a number must be finite"},
+      {"texture's place",
+       [](Picture& p, float x) { scale_of(p).world_to_texture.m[6] = double{x}; },
+       "texture scale: its transformation must be finite"},
+      {"texture's place beyond floats",
+       [](Picture& p, float) { scale_of(p).world_to_texture.m[3] = -1e300; },
+       "texture scale: its transformation must be finite and within the range of floats",
+       {0}},
+      {"texture's place in uv", [](Picture& p, float x) { scale_of(p).uv_transform[4] = x; },
+       "texture scale: its transformation of uv must be finite"},
+      {"texture of a texture", [](Picture& p, float x) { scale_of(p).inputs[0].texture = int(x); },
+       "texture scale: an input's texture must be one of 1, got", k_no_index},
+      {"texture's image", [](Picture& p, float x) { scale_of(p).image = int(x); },
+       "texture scale: its image must be one of 0, got", k_no_index},
+  };
+}
+
+Light& spot_of(Picture& p) {
+  p.scene.lights.push_back(pictures::spot_light({0, 0, 3}, {0, 0, -1}, 30, 20, {1, 1, 1}));
+  return p.scene.lights.back();
+}
+
+std::vector<Spoiler> light_spoilers() {
+  return {
       {"sky",
        [](Picture& p, float x) { p.scene.lights[0].color.z = x; },
        "its colour must be finite and not negative",
@@ -80,6 +164,18 @@ const std::vector<Spoiler>& spoilers() {
        },
        "its position must be finite",
        {k_nan, k_infinity, 3e38f}},
+      {"spot's axis", [](Picture& p, float x) { spot_of(p).direction.x = x; },
+       "its direction must be finite"},
+      {"spot's outer cosine", [](Picture& p, float x) { spot_of(p).cos_total = x; },
+       "its cosines must be finite"},
+      {"spot's inner cosine", [](Picture& p, float x) { spot_of(p).cos_falloff = x; },
+       "its cosines must be finite"},
+      {"sun's radius",
+       [](Picture& p, float x) {
+         p.scene.lights.push_back(pictures::sun_light({0, 0, 1}, 0.3, {1, 1, 1}));
+         p.scene.lights.back().cos_total = x;
+       },
+       "its cosines must be finite"},
       {"texel",
        [](Picture& p, float x) {
          p.scene.images.push_back(pictures::small_sky());
@@ -89,27 +185,59 @@ const std::vector<Spoiler>& spoilers() {
        },
        "image a test: texel 33 must be finite and not negative",
        {k_nan, k_infinity, -0.5f}},
+      {"turn of a sky",
+       [](Picture& p, float x) {
+         p.scene.images.push_back(pictures::small_sky());
+         p.scene.lights.push_back(pictures::image_light(0));
+         p.scene.lights.back().light_to_world.m[5] = double{x};
+       },
+       "its transformation must be finite"},
+      {"image of a sky",
+       [](Picture& p, float x) { p.scene.lights.push_back(pictures::image_light(int(x))); },
+       "its image must be one of 0, got", k_no_index},
+  };
+}
+
+std::vector<Spoiler> camera_spoilers() {
+  return {
       {"camera", [](Picture& p, float x) { p.camera.position.z = double{x}; },
        "a camera's position, target and up must be finite"},
-      {"index",
-       [](Picture& p, float) {
-         p.scene.objects[0].mesh.triangles[9][1] =
-             static_cast<std::uint32_t>(p.scene.objects[0].mesh.positions.size());
-       },
-       "a triangle's index must be below",
+      {"camera's target", [](Picture& p, float x) { p.camera.target.x = double{x}; },
+       "a camera's position, target and up must be finite"},
+      {"camera beyond floats",
+       [](Picture& p, float) { p.camera.position.x = 1e300; },
+       "a camera's position and target must be within 1e+18",
        {0}},
+      {"field of view",
+       [](Picture& p, float x) { p.camera.fov_deg = double{x}; },
+       "a camera's fov_deg must be in (0, 180), got",
+       {k_nan, k_infinity, -k_infinity, 0, 180}},
+      {"lens",
+       [](Picture& p, float x) { p.camera.lens_radius_m = double{x}; },
+       "a camera's lens_radius_m must be finite and not negative, got",
+       {k_nan, k_infinity, -1}},
+      {"focus",
+       [](Picture& p, float x) {
+         p.camera.lens_radius_m = 0.01;
+         p.camera.focus_distance_m = double{x};
+       },
+       "a camera's focus_distance_m must be finite and above 0, got",
+       {k_nan, k_infinity, 0, -1}},
   };
-  return all;
 }
 
 TEST(Numbers, OneThatIsNoneAnywhereInASceneIsAnErrorThatSaysWhere) {
   EXPECT_EQ(error_of(lit_sphere()), "no error");
-  for (const Spoiler& spoiler : spoilers())
-    for (const float value : spoiler.values) {
-      Picture p = lit_sphere();
-      spoiler.spoil(p, value);
-      EXPECT_THAT(error_of(p), testing::HasSubstr(spoiler.message)) << spoiler.name << " " << value;
-    }
+  for (const std::vector<Spoiler>& spoilers :
+       {mesh_spoilers(), material_spoilers(), texture_spoilers(), light_spoilers(),
+        camera_spoilers()})
+    for (const Spoiler& spoiler : spoilers)
+      for (const float value : spoiler.values) {
+        Picture p = lit_sphere();
+        spoiler.spoil(p, value);
+        EXPECT_THAT(error_of(p), testing::HasSubstr(spoiler.message))
+            << spoiler.name << " " << value;
+      }
   // What failed leaves nothing behind.
   EXPECT_EQ(error_of(lit_sphere()), "no error");
 }
@@ -139,7 +267,8 @@ TEST(Numbers, AModelFileWithABadVertexOrIndexIsMended) {
     p.camera.position = {3, 3, 3};
     p.camera.target = {0.3, 0.3, 0.3};
     p.camera.fov_deg = 3;
-    EXPECT_LT(hard::worst_difference(hard::trace(p, {}), 0.5), 1e-6) << file;
+    hard::everywhere(p,
+                     [](const Film& film) { EXPECT_LT(hard::worst_difference(film, 0.5), 1e-6); });
   };
   for (const char* bad : {"3e38", "-3e38", "nan", "inf", "-inf", "1e400", "1e30"})
     expect_tetra(tetra_and("0 " + std::string(bad) + " 0\n", 1, "3 0 1 4\n4 0 1 2 4\n", 2));

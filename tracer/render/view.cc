@@ -51,6 +51,10 @@ CameraFrame camera_frame(const Camera& camera) {
       fail(ErrorKind::recipe, "a camera's position, target and up must be finite, got {} {} {}",
            v.x, v.y, v.z);
   CameraFrame f;
+  for (const Vec3d& v : {camera.position, camera.target})
+    if (std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}) > k_farthest_coordinate)
+      fail(ErrorKind::recipe, "a camera's position and target must be within {:g}, got {} {} {}",
+           k_farthest_coordinate, v.x, v.y, v.z);
   f.forward = normalized(camera.target - camera.position);
   if (f.forward == Vec3d{}) fail(ErrorKind::recipe, "a camera's target must not be its position");
   for (const Vec3d& up : {camera.up, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}) {
@@ -63,8 +67,26 @@ CameraFrame camera_frame(const Camera& camera) {
   return f;
 }
 
+namespace {
+
+/// Readers hold recipes to this; a camera of a program's own comes here unchecked.
+void check_lens(const Camera& camera) {
+  if (!(camera.fov_deg > 0 && camera.fov_deg < 180))
+    fail(ErrorKind::recipe, "a camera's fov_deg must be in (0, 180), got {}", camera.fov_deg);
+  if (!(camera.lens_radius_m >= 0 && std::isfinite(camera.lens_radius_m)))
+    fail(ErrorKind::recipe, "a camera's lens_radius_m must be finite and not negative, got {}",
+         camera.lens_radius_m);
+  if (camera.lens_radius_m > 0 &&
+      !(camera.focus_distance_m > 0 && std::isfinite(camera.focus_distance_m)))
+    fail(ErrorKind::recipe, "a camera's focus_distance_m must be finite and above 0, got {}",
+         camera.focus_distance_m);
+}
+
+}  // namespace
+
 kernels::ViewData view_data(const Camera& camera, const EngineSettings& engine) {
   const CameraFrame f = camera_frame(camera);
+  check_lens(camera);
   const double longer = std::max(engine.width, engine.height);
   const double half = tan_half(camera.fov_deg);
   kernels::ViewData v{};

@@ -14,10 +14,12 @@ struct CameraFrame {
   Vec3d right, up, forward;
 };
 /// Where the view runs along `camera.up`, +Y stands in for it (and +Z where it runs along that
-/// too). Throws Error(recipe) for a target at the position.
+/// too). Throws Error(recipe) for a target at the position, and for what is not finite or
+/// too far (k_farthest_coordinate).
 CameraFrame camera_frame(const Camera& camera);
 
-/// The constants the kernels take. fov_deg spans the longer side.
+/// The constants the kernels take. fov_deg spans the longer side. Throws Error(recipe) for a number
+/// of the camera out of its range (scene.h).
 kernels::ViewData view_data(const Camera& camera, const EngineSettings& engine);
 
 /// tan of half the angle, degrees in (0, 180), from + - * / and sqrt alone: the same bits on every

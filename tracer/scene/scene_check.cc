@@ -64,11 +64,52 @@ void check_object(const Scene& scene, const Object& object) {
          scene.materials.size(), object.material);
 }
 
-void check_material(const Material& material) {
-  for (const TextureRef& input : material.inputs)
+/// A matrix is kept in double and reaches the tracer in float.
+void check_matrix(const Mat4& matrix, const char* kind, const std::string& name, const char* what) {
+  for (const double x : matrix.m)
+    if (!std::isfinite(static_cast<float>(x)))
+      fail(ErrorKind::asset, "{} {}: {} must be finite and within the range of floats, got {:g}",
+           kind, name, what, x);
+}
+
+/// What textures and materials have in common. `textures`: how many an input may name.
+void check_node(const char* kind, const std::string& name, const std::vector<TextureRef>& inputs,
+                const std::vector<float>& numbers, std::size_t textures) {
+  for (const TextureRef& input : inputs) {
     if (!is_finite(input.constant))
-      fail(ErrorKind::asset, "material {}: a value must be finite, got {} {} {}", material.name,
+      fail(ErrorKind::asset, "{} {}: a value must be finite, got {} {} {}", kind, name,
            input.constant.x, input.constant.y, input.constant.z);
+    if (input.texture != -1 && !is_index(input.texture, textures))
+      fail(ErrorKind::asset, "{} {}: an input's texture must be one of {}, got {}", kind, name,
+           textures, input.texture);
+  }
+  for (const float number : numbers)
+    if (!std::isfinite(number))
+      fail(ErrorKind::asset, "{} {}: a number must be finite, got {}", kind, name, number);
+}
+
+/// The texture at `place`: its inputs stand before it.
+void check_texture(const Scene& scene, std::size_t place) {
+  const Texture& texture = scene.textures[place];
+  check_node("texture", texture.name, texture.inputs, texture.numbers, place);
+  check_matrix(texture.world_to_texture, "texture", texture.name, "its transformation");
+  for (const float x : texture.uv_transform)
+    if (!std::isfinite(x))
+      fail(ErrorKind::asset, "texture {}: its transformation of uv must be finite, got {}",
+           texture.name, x);
+  if (texture.image != -1 && !is_index(texture.image, scene.images.size()))
+    fail(ErrorKind::asset, "texture {}: its image must be one of {}, got {}", texture.name,
+         scene.images.size(), texture.image);
+}
+
+/// The material at `place`: its parts stand before it.
+void check_material(const Scene& scene, std::size_t place) {
+  const Material& material = scene.materials[place];
+  check_node("material", material.name, material.inputs, material.numbers, scene.textures.size());
+  for (const int child : material.children)
+    if (child != -1 && !is_index(child, place))
+      fail(ErrorKind::asset, "material {}: a part must be one of the {} before it, got {}",
+           material.name, place, child);
   const Vec3 emission = material.emission.constant;
   if (material.emits && !is_radiance(emission))
     fail(ErrorKind::asset, "material {}: emission must be finite and not negative, got {} {} {}",
@@ -85,6 +126,10 @@ void check_light(const Scene& scene, const Light& light) {
          light.name, k_farthest_coordinate, p.x, p.y, p.z);
   if (!is_finite(light.direction))
     fail(ErrorKind::asset, "light {}: its direction must be finite", light.name);
+  if (!std::isfinite(light.cos_total) || !std::isfinite(light.cos_falloff))
+    fail(ErrorKind::asset, "light {}: its cosines must be finite, got {} and {}", light.name,
+         light.cos_total, light.cos_falloff);
+  check_matrix(light.light_to_world, "light", light.name, "its transformation");
   if (light.kind == LightKind::infinite && !is_index(light.image, scene.images.size()))
     fail(ErrorKind::asset, "light {}: its image must be one of {}, got {}", light.name,
          scene.images.size(), light.image);
@@ -103,8 +148,10 @@ void check_image(const Image& image) {
 void check_scene(const Scene& scene) {
   for (const Object& object : scene.objects)
     check_object(scene, object);
-  for (const Material& material : scene.materials)
-    check_material(material);
+  for (std::size_t i = 0; i < scene.textures.size(); ++i)
+    check_texture(scene, i);
+  for (std::size_t i = 0; i < scene.materials.size(); ++i)
+    check_material(scene, i);
   for (const Light& light : scene.lights)
     check_light(scene, light);
   for (const Image& image : scene.images)
