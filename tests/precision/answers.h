@@ -5,6 +5,7 @@
 
 #include "tests/precision/kernels_for_audit.h"
 #include "tests/precision/questions.h"
+#include "tests/tracer/kernels/mix_on_host.h"
 #include "tracer/kernels/lists.h"
 
 #include <bit>
@@ -27,14 +28,6 @@ real2 of(float x, float y) {
 }
 Three three(real3 v) {
   return {double{v.x}, double{v.y}, double{v.z}};
-}
-
-// Stand-ins for the one row of the list that has no BSDF.
-BsdfValue mix_evaluate(const real*, Viewer, real3) {
-  return no_value();
-}
-BsdfSample mix_sample(const real*, Viewer, real2, real2) {
-  return no_sample();
 }
 
 }  // namespace

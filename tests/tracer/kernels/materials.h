@@ -24,7 +24,8 @@ inline void PrintTo(const Case& material, std::ostream* out) {
   *out << material.name;
 }
 
-/// All but mix, which is resolved to its parts before a BSDF is asked.
+/// Mix is one of metal2 with a mix of matte and mirror (mix_on_host.h): its value and pdf are means
+/// over its parts, a sample's weight and pdf are those of the part it chose.
 std::vector<Case> all();
 
 /// The table's defaults in the layout the functions take, with every roughness set to `roughness`.
