@@ -2,6 +2,7 @@
 // Roulette, multiple importance sampling and the sampler change a picture's noise, never its mean:
 // t-tests for every material of the table. |z| < 4.5 fails a right program once in 150,000 tests.
 #include "tests/hard/everywhere.h"
+#include "tests/tracer/kernels/chi_square.h"
 #include "tests/tracer/kernels/materials.h"
 #include "tracer/device/scene_pack.h"
 #include "tracer/scene/type_tables.h"
@@ -34,7 +35,7 @@ Picture still_life(const std::string& material) {
   Picture p = hard::deep_picture(12, 32);
   p.engine.depth_total = 24;
   const int floor = pictures::add_matte(p.scene, {0.7f, 0.7f, 0.7f});
-  const int body = pictures::add_material(p.scene, material);
+  const int body = hard::add_material(p.scene, material);
   pictures::add_object(p.scene, pictures::quad({0, 0, -0.5f}, {2, 0, 0}, {0, 2, 0}), floor);
   pictures::add_object(p.scene, pictures::sphere({-0.3f, 0.2f, 0}, 0.45f, 12, true), body);
   pictures::add_object(p.scene, pictures::box({0.5f, -0.2f, -0.2f}, {0.25f, 0.2f, 0.25f}), body);
@@ -101,7 +102,7 @@ TEST(Estimator, AnotherSamplerAndOneStrategy) {
       v = std::min(v, 5.0f);
     p.scene.lights.push_back(pictures::image_light(0));
     pictures::add_object(p.scene, pictures::quad({}, {1, 0, 0}, {0, 1, 0}),
-                         pictures::add_material(p.scene, material.name));
+                         hard::add_material(p.scene, material.name));
     p.camera.position = {6e3, -5e3, 7e3};
     p.camera.fov_deg = 0.001;
     const HostLights lights(p.scene);
@@ -134,6 +135,65 @@ TEST(Estimator, AnotherSamplerAndOneStrategy) {
     for (const hard::Way& on : k_two_ways)
       expect_same_mean(host, hard::estimate(p, on, 16),
                        std::string(material.name) + ", " + on.name());
+  }
+}
+
+/// By pixel: the mean of its channels over independent pictures, and that mean's squared error.
+struct PixelMoments {
+  std::vector<double> mean, squared_error;
+};
+
+PixelMoments pixel_moments(const Picture& picture, const hard::Way& way, int pictures,
+                           std::uint64_t first_seed) {
+  const std::size_t pixels = static_cast<std::size_t>(picture.engine.width) *
+                             static_cast<std::size_t>(picture.engine.height);
+  PixelMoments m{std::vector<double>(pixels), std::vector<double>(pixels)};
+  Picture p = picture;
+  for (int k = 0; k < pictures; ++k) {
+    p.engine.seed = pictures::wide_seed(first_seed + static_cast<std::uint64_t>(k));
+    const Film film = hard::trace(p, way);
+    EXPECT_EQ(film.rejected_samples, 0u);
+    for (std::size_t i = 0; i < pixels; ++i) {
+      const double v = double{film.rgb[3 * i] + film.rgb[3 * i + 1] + film.rgb[3 * i + 2]} / 3;
+      const double step = v - m.mean[i];  // Welford 1962
+      m.mean[i] += step / (k + 1);
+      m.squared_error[i] += step * (v - m.mean[i]);
+    }
+  }
+  for (double& e : m.squared_error)
+    e /= double{pictures - 1.0} * pictures;
+  return m;
+}
+
+/// How many pixels differ by more than chance: at 0.01 for all together (Sidak).
+std::size_t pixels_that_differ(const PixelMoments& a, const PixelMoments& b) {
+  const double limit = sidak(static_cast<double>(a.mean.size()));
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < a.mean.size(); ++i) {
+    const double error = std::sqrt(a.squared_error[i] + b.squared_error[i]);
+    const double z = std::fabs(a.mean[i] - b.mean[i]) / (error + 1e-6 * a.mean[i] + 1e-30);
+    differ += std::erfc(z / std::sqrt(2.0)) < limit;
+  }
+  return differ;
+}
+
+TEST(Estimator, IndependentPicturesAgreePixelByPixel) {
+  // Other samples, arithmetic, lanes and program (Mitsuba's test_renders.py: a z-test at 0.01 with
+  // Sidak, passed by 99.75 % of the pixels).
+  for (Picture picture : pictures::all_effects()) {
+    picture.engine.spp = 8;
+    constexpr int k_pictures = 32;
+    const PixelMoments a = pixel_moments(picture, k_two_ways[0], k_pictures, 1);
+    const std::size_t most = a.mean.size() / 400;
+    EXPECT_LE(pixels_that_differ(a, pixel_moments(picture, k_two_ways[1], k_pictures, 1000)), most)
+        << picture.name;
+    // It can tell: a light a twentieth brighter is seen.
+    if (picture.name != "textures") continue;
+    for (Light& light : picture.scene.lights)
+      light.color = light.color * 1.05f;
+    EXPECT_GT(pixels_that_differ(a, pixel_moments(picture, k_two_ways[1], k_pictures, 1000)),
+              10 * most)
+        << picture.name;
   }
 }
 

@@ -21,10 +21,16 @@ std::string Way::name() const {
 std::vector<Way> ways() {
   std::vector<Way> all;
   for (const MathMode math : {MathMode::strict, MathMode::fast})
-    for (const int lanes : {8, 1})
+    for (const int lanes : {16, 1})
       for (const bool full : {false, true})
         all.push_back({math, lanes, full});
   return all;
+}
+
+std::vector<Way> full_program_ways() {
+  std::vector<Way> full = ways();
+  std::erase_if(full, [](const Way& way) { return !way.full_program; });
+  return full;
 }
 
 namespace {
@@ -92,9 +98,54 @@ pictures::Estimate estimate(const pictures::Picture& picture, const Way& way, in
 std::vector<std::string> materials(bool with_transparent) {
   std::vector<std::string> names;
   for (const NodeType& type : material_types())
-    if (type.name != "mix" && (with_transparent || find_input(type, "kt") < 0))
-      names.emplace_back(type.name);
+    if (with_transparent || find_input(type, "kt") < 0) names.emplace_back(type.name);
   return names;
+}
+
+int add_mix(Scene& scene, int first, int second) {
+  const int mix = pictures::add_material(scene, "mix");
+  Material& material = scene.materials[static_cast<std::size_t>(mix)];
+  material.children[0] = first;
+  material.children[1] = second;
+  return mix;
+}
+
+int add_material(Scene& scene, std::string_view type) {
+  if (type != "mix") return pictures::add_material(scene, type);
+  const int metal = pictures::add_material(scene, "metal2");
+  const int matte = pictures::add_material(scene, "matte");
+  const int mirror = pictures::add_material(scene, "mirror");
+  return add_mix(scene, metal, add_mix(scene, matte, mirror));
+}
+
+void add_patches(Scene& scene, const Mesh& mesh, const std::vector<int>& materials) {
+  for (std::size_t first = 0; first < materials.size(); ++first) {
+    Mesh patch = mesh;
+    patch.triangles.clear();
+    for (std::size_t i = first; i < mesh.triangles.size(); i += materials.size())
+      patch.triangles.push_back(mesh.triangles[i]);
+    pictures::add_object(scene, patch, materials[first]);
+  }
+}
+
+std::vector<int> add_white_materials(Scene& scene, float u_roughness, float v_roughness) {
+  std::vector<int> added;
+  const std::size_t before = scene.materials.size();
+  for (const std::string& name : materials(false))
+    added.push_back(add_material(scene, name));
+  for (std::size_t i = before; i < scene.materials.size(); ++i) {
+    const NodeType& type = material_types()[static_cast<std::size_t>(scene.materials[i].type)];
+    // n = 0 makes a metal's reflectance 1.
+    for (const auto& [input, value] : {std::pair{"kd", 1.0f},
+                                       {"ks", 1.0f},
+                                       {"kr", 1.0f},
+                                       {"n", 0.0f},
+                                       {"uroughness", u_roughness},
+                                       {"vroughness", v_roughness}})
+      if (find_input(type, input) >= 0)
+        pictures::set_input(scene, static_cast<int>(i), input, {value, value, value});
+  }
+  return added;
 }
 
 pictures::Picture deep_picture(int pixels, int spp, int roulette) {

@@ -7,19 +7,22 @@
 #include <string>
 #include <vector>
 
-/// A hard case holds in strict and in fast arithmetic, one path a work-item and eight, in the
-/// program made for the scene and in the one of all effects.
+/// A hard case holds in strict and in fast arithmetic, with as many paths side by side as users get
+/// and with one, in the program made for the scene and in the one of all effects.
 namespace ds::hard {
 
 struct Way {
   MathMode math = MathMode::strict;
-  int lanes = 8;
+  int lanes = 16;  ///< what TracerOptions::lanes = 0 is on processors
   bool full_program = false;
   std::string name() const;
 };
 
 /// All eight.
 std::vector<Way> ways();
+/// Those with the program of all effects, which no scene makes the tests wait for: enough where a
+/// case is about a scene of its own for every material.
+std::vector<Way> full_program_ways();
 
 /// Traces on a tracer that the process keeps for each way.
 Film trace(const pictures::Picture& picture, const Way& way);
@@ -32,8 +35,20 @@ void everywhere(const pictures::Picture& picture, const std::function<void(const
 pictures::Estimate estimate(const pictures::Picture& picture, const Way& way, int pictures,
                             std::uint64_t first_seed = 1);
 
-/// Every material of the table but mix and, where asked, those that let light through.
+/// Every material of the table but, where not asked for, those that let light through.
 std::vector<std::string> materials(bool with_transparent);
+/// A material of this type with the table's defaults, and its parts before it; its index. A mix is
+/// one of metal2 with a mix of matte and mirror (as materials::all() of tests/tracer/kernels has
+/// it).
+int add_material(Scene& scene, std::string_view type);
+/// A mix of these two in equal shares; its index.
+int add_mix(Scene& scene, int first, int second);
+
+/// The mesh with its triangles dealt out to these materials in turn.
+void add_patches(Scene& scene, const Mesh& mesh, const std::vector<int>& materials);
+/// A material of every type that lets no light through, with nothing absorbed: white but for what
+/// the fits of microfacet.h leave (multiple_scattering_test.cc). One program for all of them.
+std::vector<int> add_white_materials(Scene& scene, float u_roughness, float v_roughness);
 
 /// A small square picture that follows paths to any depth and plays no roulette before `roulette`.
 pictures::Picture deep_picture(int pixels, int spp, int roulette = 1000);
