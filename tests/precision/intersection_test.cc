@@ -4,11 +4,13 @@
 #include "tests/precision/stage.h"
 #include "tests/render/pictures.h"
 #include "tests/tracer/accel/rays.h"
+#include "tracer/render/view.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <span>
 
 namespace ds {
@@ -182,44 +184,110 @@ std::array<float, 3> three_of(Vec3 v) {
   return {v.x, v.y, v.z};
 }
 
-TEST(Precision, Hit) {
-  // hit_weights as the device has it, and the point that surface_of makes of them.
-  Stage weights("intersection: hit_weights"), off_plane("intersection: hit off its plane");
-  Numbers numbers(6);
+/// hit_weights as the device has it, and the point that surface_of makes of them.
+struct HitStages {
+  Stage weights{"intersection: hit_weights"}, off_plane{"intersection: hit off its plane"};
   int asked = 0, others = 0;
+
+  /// False where the arithmetic of test_leaf, which is the same, has no hit: through an edge, or as
+  /// good as in the plane.
+  bool ask(const rays::TestRay& ray, const rays::Corners& c, const ExactHit& exact,
+           const std::string& where) {
+    const HitQuestion q{{three_of(c[0]), three_of(c[1]), three_of(c[2])},
+                        three_of(ray.origin),
+                        three_of(ray.direction)};
+    const HitAnswer f = in_float::ask(q), d = in_double::ask(q);
+    ++asked;
+    if (!(f.b1 >= 0 && f.b2 >= 0 && f.b1 + f.b2 <= 1)) {
+      ++others;
+      return false;
+    }
+    weights.add(std::max(std::fabs(f.b1 - d.b1), std::fabs(f.b2 - d.b2)),
+                weights_condition(ray, c, exact), where);
+    const Vec3d e1 = to_double(c[1]) - to_double(c[0]), e2 = to_double(c[2]) - to_double(c[0]);
+    point = {f.position[0], f.position[1], f.position[2]};
+    // In half-ulps of the bound that rays are offset by half of: 2^24 of them are all of it.
+    off_plane.add(std::fabs(dot(point - to_double(c[0]), normalized(cross(e1, e2)))) / d.error,
+                  0x1p24, where);
+    return true;
+  }
+  void expect_within_bounds() const {
+    // 1.02 is measured: corners relative to the ray's start are rounded once, and so are their
+    // shears.
+    weights.expect_within(1.5);
+    // 0.62 is measured of the bound that position_error states.
+    off_plane.expect_within(1);
+  }
+  Vec3d point;  ///< of the last hit
+};
+
+TEST(Precision, Hit) {
+  HitStages stages;
+  Numbers numbers(6);
   for (const Sort& sort :
        {Sort{"ordinary", 1, 1, 1}, Sort{"needle", 1, 1e-5, 1}, Sort{"1e-6 m", 1e-6, 1, 1e-6},
-        Sort{"1e6 m", 1e6, 1, 1e6}, Sort{"1 m at 1e5 m", 1, 1, 1e5}}) {
+        Sort{"1e6 m", 1e6, 1, 1e6}, Sort{"1 m at 1e5 m", 1, 1, 1e5}})
     for (int i = 0; i < 20000; ++i) {
       const rays::Corners c = some_triangle(sort, numbers);
       const rays::TestRay ray = ray_to(c, sort.size_m, numbers);
       const ExactHit exact = exact_hit(ray, std::span(&c, 1));
       if (exact.id != 0) continue;  // its rounding took it past an edge, or it is in the plane
-      const HitQuestion q{{three_of(c[0]), three_of(c[1]), three_of(c[2])},
-                          three_of(ray.origin),
-                          three_of(ray.direction)};
-      const HitAnswer f = in_float::ask(q), d = in_double::ask(q);
-      ++asked;
-      if (!(f.b1 >= 0 && f.b2 >= 0 && f.b1 + f.b2 <= 1)) {
-        ++others;  // no hit by the same arithmetic in test_leaf: through an edge, or as good as in
-        continue;  // the plane
-      }
-      weights.add(std::max(std::fabs(f.b1 - d.b1), std::fabs(f.b2 - d.b2)),
-                  weights_condition(ray, c, exact), sort.name);
-      const Vec3d e1 = to_double(c[1]) - to_double(c[0]), e2 = to_double(c[2]) - to_double(c[0]);
-      const Vec3d point{f.position[0], f.position[1], f.position[2]};
-      // In half-ulps of the bound that rays are offset by half of: 2^24 of them are all of it.
-      off_plane.add(std::fabs(dot(point - to_double(c[0]), normalized(cross(e1, e2)))) / d.error,
-                    0x1p24, sort.name);
+      stages.ask(ray, c, exact, sort.name);
     }
-  }
-  // 1.02 is measured: corners relative to the ray's start are rounded once, and so are their
-  // shears.
-  weights.expect_within(1.5);
-  // 0.62 is measured of the bound that position_error states.
-  off_plane.expect_within(1);
+  stages.expect_within_bounds();
   // An eighth of the rays are aimed at an edge, where every other one misses.
-  EXPECT_LT(others, asked / 20);
+  EXPECT_LT(stages.others, stages.asked / 20);
+}
+
+/// The ray that the tracer starts at this place in the picture and on the lens.
+rays::TestRay camera_ray_of(const kernels::ViewData& view, double x, double y, Numbers& numbers) {
+  CameraQuestion q;
+  std::memcpy(q.view.data(), &view, sizeof(view));
+  q.place = {static_cast<float>(x), static_cast<float>(y)};
+  for (float& n : q.lens_numbers)
+    n = numbers.next();
+  const CameraAnswer a = in_float::ask(q);
+  return {to_float(Vec3d{a.origin[0], a.origin[1], a.origin[2]}),
+          to_float(Vec3d{a.direction[0], a.direction[1], a.direction[2]})};
+}
+
+TEST(Precision, HitsOfAScene) {
+  // What the paths of a picture ask: its camera's rays, and on from where they hit.
+  HitStages stages;
+  Numbers numbers(7);
+  const pictures::Picture picture = pictures::all_effects().back();
+  for (const double scale : {1e-6, 1.0, 1e6}) {
+    std::vector<rays::Corners> corners;
+    for (const Object& object : picture.scene.objects)
+      for (rays::Corners c : rays::corners_of(object.mesh)) {
+        for (Vec3& v : c)
+          v = v * static_cast<float>(scale);
+        corners.push_back(c);
+      }
+    Camera camera = picture.camera;
+    camera.position = camera.position * scale;
+    camera.target = camera.target * scale;
+    camera.lens_radius_m *= scale;
+    camera.focus_distance_m *= scale;
+    const kernels::ViewData view = view_data(camera, picture.engine);
+    for (int y = 0; y < picture.engine.height; ++y)
+      for (int x = 0; x < picture.engine.width; ++x) {
+        rays::TestRay ray = camera_ray_of(view, x + 0.5, y + 0.5, numbers);
+        for (int bounce = 0; bounce < 3; ++bounce) {
+          const ExactHit exact = exact_hit(ray, corners);
+          if (exact.id >= corners.size() ||
+              !stages.ask(ray, corners[exact.id], exact,
+                          fmt::format("scene times {:g}, ray {}", scale, bounce)))
+            break;
+          // A way on, a thousandth off the surface: offset_origin has its own stage.
+          const std::array<float, 3> on = numbers.direction();
+          ray.direction = {on[0], on[1], on[2]};
+          ray.origin = to_float(stages.point + to_double(ray.direction) * (1e-3 * scale));
+        }
+      }
+  }
+  stages.expect_within_bounds();
+  EXPECT_LT(stages.others, stages.asked / 1000);
 }
 
 }  // namespace
