@@ -2,6 +2,7 @@
 #include "tests/render/pictures.h"
 
 #include "tracer/base/hash.h"
+#include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
 
 #include <algorithm>
@@ -274,6 +275,8 @@ std::vector<Picture> all_effects() {
   add_local_lights(everything);
   add_far_lights(everything);
   everything.objects.back().camera_invisible = true;  // the emitter
+  for (Object& object : everything.objects)
+    if (object.id >= 10) object.id = k_model_object_id;  // every material's sphere
   Camera lens = looking_at_origin();
   lens.lens_radius_m = 0.05;
   pictures.push_back({"everything", everything, lens, small_engine()});

@@ -3,6 +3,7 @@
 
 #include "tracer/base/error.h"
 #include "tracer/device/program_text.h"
+#include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
 
 #include <algorithm>
@@ -158,8 +159,8 @@ void add_camera(const Scene& scene, const Camera& camera, const Features& f, Eff
            "the camera sees every object");
 }
 
-void add_transport(const Features& f, EffectList& list) {
-  Callers sampled, beyond, lobes;
+void add_transport(const Scene& scene, const Features& f, EffectList& list) {
+  Callers sampled, beyond, lobes, guide;
   for (const std::string& kind : f.lights)
     if (samples_light(kind)) sampled.add(kind);
   list.add("transport", "sampling of lights", samples_lights(f), sampled,
@@ -173,6 +174,12 @@ void add_transport(const Features& f, EffectList& list) {
   if (f.mix) lobes.add("mix");
   list.add("transport", "choice among lobes", f.lobe_choice, lobes,
            "every material shown has one lobe");
+  for (const Object& object : scene.objects)
+    if (f.guide && object.id == k_model_object_id) guide.add(named("object", object.name));
+  list.add("transport", "guide to caustics", f.guide, guide,
+           std::none_of(f.lights.begin(), f.lights.end(), is_small_light)
+               ? "no light is small"
+               : "the model is not shiny, or nothing shown is dull");
 }
 
 }  // namespace
@@ -183,7 +190,7 @@ std::vector<Effect> effects_of(const Scene& scene, const Camera& camera) {
   add_nodes(scene, features, list);
   add_lights(scene, features, list);
   add_camera(scene, camera, features, list);
-  add_transport(features, list);
+  add_transport(scene, features, list);
   return list.take();
 }
 

@@ -4,6 +4,7 @@
 #include "tracer/base/error.h"
 #include "tracer/device/texture_code.h"
 #include "tracer/kernels/embedded.h"
+#include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
 
 #include <algorithm>
@@ -109,6 +110,21 @@ void add_materials(const Scene& scene, Features& f) {
 const std::vector<std::string> k_local_lights = {"mesh", "point", "spot"};
 const std::vector<std::string> k_escape_lights = {"constant_infinite", "infinite", "sun"};
 
+/// Whether the model shows a shiny material, itself or in a mix.
+bool model_is_shiny(const Scene& scene) {
+  std::vector<bool> shiny(scene.materials.size(), false);
+  for (std::size_t i = 0; i < shiny.size(); ++i) {
+    const Material& material = scene.materials[i];
+    shiny[i] = is_shiny(material_types()[static_cast<std::size_t>(material.type)].kernel_prefix);
+    for (const int child : material.children)
+      if (child >= 0 && shiny[static_cast<std::size_t>(child)]) shiny[i] = true;
+  }
+  return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
+    return object.id == k_model_object_id && object.material >= 0 &&
+           shiny[static_cast<std::size_t>(object.material)];
+  });
+}
+
 void add_lights(const Scene& scene, Features& f) {
   std::set<std::string_view> names;
   for (const Light& light : scene.lights)
@@ -155,6 +171,19 @@ bool has_lobes(std::string_view material) {
   return material == "glossy2" || material == "metal2" || material == "glass";
 }
 
+bool is_small_light(std::string_view kind) {
+  return kind == "point" || kind == "spot" || kind == "sun" || kind == "mesh";
+}
+
+bool is_shiny(std::string_view material) {
+  return material == "glossy2" || material == "metal2" || material == "mirror" ||
+         material == "glass";
+}
+
+bool is_dull(std::string_view material) {
+  return material == "matte" || material == "glossy2";
+}
+
 bool shines(const Light& light) {
   return light.color.x > 0 || light.color.y > 0 || light.color.z > 0;
 }
@@ -177,6 +206,8 @@ Features features_of(const Scene& scene, const Camera& camera) {
   f.camera_invisible = std::any_of(scene.objects.begin(), scene.objects.end(),
                                    [](const Object& object) { return object.camera_invisible; });
   f.lobe_choice = f.mix || std::any_of(f.materials.begin(), f.materials.end(), has_lobes);
+  f.guide = std::any_of(f.lights.begin(), f.lights.end(), is_small_light) &&
+            model_is_shiny(scene) && std::any_of(f.materials.begin(), f.materials.end(), is_dull);
   return f;
 }
 
@@ -191,7 +222,7 @@ Features all_features() {
   f.lights = k_local_lights;
   f.lights.insert(f.lights.end(), k_escape_lights.begin(), k_escape_lights.end());
   f.escape_lights = k_escape_lights;
-  f.mix = f.lens = f.camera_invisible = f.lobe_choice = true;
+  f.mix = f.lens = f.camera_invisible = f.lobe_choice = f.guide = true;
   f.texture_stack = k_texture_stack_limit;
   return f;
 }
@@ -219,7 +250,15 @@ std::string path_program_text(const Features& f) {
   if (f.mix) head += fmt::format("#define DS_MIX_NUMBER {}\n", f.materials.size());
   if (f.lens) head += "#define DS_LENS\n";
   if (f.camera_invisible) head += "#define DS_CAMERA_INVISIBLE\n";
-  if (f.lobe_choice) head += "#define DS_LOBE_CHOICE\n";
+  if (f.lobe_choice || f.guide) head += "#define DS_LOBE_CHOICE\n";
+  if (f.guide) {
+    std::string dull;
+    for (const std::string& name : f.materials)
+      if (is_dull(name))
+        dull += fmt::format("{}((type) == {}u)", dull.empty() ? "" : " | ",
+                            Features::number(f.materials, name));
+    head += fmt::format("#define DS_GUIDED(type) ({})\n", dull);
+  }
 
   std::set<std::string, std::less<>> done;
   std::string text = head;

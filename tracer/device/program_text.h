@@ -22,8 +22,9 @@ struct Features {
   bool lens = false;
   bool camera_invisible = false;  ///< an object that camera rays pass through
   bool lobe_choice = false;       ///< a material that picks one of several lobes, or mix
-  int material_inputs = 1;        ///< most floats any used material's inputs take
-  int texture_stack = 1;          ///< most values any texture program has on its stack at once
+  bool guide = false;       ///< dull surfaces look for what the shiny model has gathered (guide.h)
+  int material_inputs = 1;  ///< most floats any used material's inputs take
+  int texture_stack = 1;    ///< most values any texture program has on its stack at once
 
   bool operator==(const Features&) const = default;
   /// Position in the list, or -1.
@@ -38,6 +39,14 @@ bool samples_light(std::string_view kind);
 bool samples_lights(const Features& features);
 /// Whether the material with this kernel prefix picks one of several lobes.
 bool has_lobes(std::string_view material);
+
+/// Whether this kind of light shines from few directions, so that what shiny things gather of it is
+/// bright and small.
+bool is_small_light(std::string_view kind);
+/// Whether surfaces of the material with this kernel prefix gather light so that dull ones can look
+/// for it, and whether they are dull.
+bool is_shiny(std::string_view material);
+bool is_dull(std::string_view material);
 
 /// False for a light or an emitter whose radiance is 0: it is treated as if it were not there. What
 /// an image or a texture holds is not looked at.

@@ -21,6 +21,7 @@
 // clang-format off
 namespace ds::DS_KERNELS {
 #include "tracer/kernels/camera.h"
+#include "tracer/kernels/guide.h"
 #include "tracer/kernels/lights/constant_infinite.h"
 #include "tracer/kernels/lights/infinite.h"
 #include "tracer/kernels/lights/mesh.h"

@@ -7,6 +7,8 @@
 #include "tracer/kernels/batch.cl"
 #include "tracer/kernels/camera.h"
 #include "tracer/kernels/film.cl"
+#include "tracer/kernels/guide.h"
+#include "tracer/kernels/hits.cl"
 #include "tracer/kernels/ray_counts.h"
 #include "tracer/kernels/shade.h"
 
@@ -41,7 +43,30 @@ typedef struct {
   DS_GLOBAL float* triangles;
   MaterialTables materials;
   LightTables lights;
+  DS_GLOBAL float* guide;
 } SceneTables;
+
+/// How a path may leave a surface point: by its material's BSDF, and where that is dull by the
+/// guide as well.
+typedef struct {
+  Frame frame;
+  Viewer viewer;
+#ifdef DS_GUIDED
+  Guide guide;
+#endif
+} Leaving;
+
+/// Density of a direction that the BSDF samples with this one.
+DS_FN real leaving_pdf(const Leaving* l, real3 wi, real bsdf_pdf) {
+#ifdef DS_GUIDED
+  if (any_lane(l->guide.there)) {
+    const real both =
+        fma(guide_pdf(&l->guide, wi), (real)(k_guide_share), (1.0f - k_guide_share) * bsdf_pdf);
+    return choose(l->guide.there, both, bsdf_pdf);
+  }
+#endif
+  return bsdf_pdf;
+}
 
 /// Starts the next sample in the lanes of `start`.
 DS_FN void start_paths(Paths* paths, mask start, const Pixels* pixels, const ViewData* view) {
@@ -70,82 +95,6 @@ DS_FN void start_paths(Paths* paths, mask start, const Pixels* pixels, const Vie
   paths->glossy = choose_natural(start, none, paths->glossy);
   paths->specular = choose_natural(start, none, paths->specular);
   paths->alive = paths->alive | start;
-}
-
-/// The rows of the triangles that were hit, lane by lane; lanes are taken apart only here and in
-/// batch.cl.
-typedef struct {
-  float word[k_triangle_words][DS_LANES] __attribute__((aligned(64)));
-} LaneHits;
-
-#if DS_LANES == 1
-DS_FN void load_triangles(DS_GLOBAL float* triangles, const BatchHits* found, LaneHits* hits) {
-  const uint id = found->id[0];
-  DS_GLOBAL float* triangle = triangles + (id == k_none ? 0u : id) * k_triangle_words;
-  for (int i = 0; i < k_triangle_words; ++i)
-    hits->word[i][0] = triangle[i];
-}
-#else
-/// Four lanes at a time, by transposing blocks of four words.
-DS_FN void load_triangles(DS_GLOBAL float* triangles, const BatchHits* found, LaneHits* hits) {
-  for (int lane = 0; lane < DS_LANES; lane += 4) {
-    const __global float4* row[4];
-    for (int i = 0; i < 4; ++i) {
-      const uint id = found->id[lane + i];
-      row[i] = (const __global float4*)(triangles + (id == k_none ? 0u : id) * k_triangle_words);
-    }
-    for (int i = 0; i < k_triangle_words / 4; ++i) {
-      const float4 a = row[0][i], b = row[1][i], c = row[2][i], d = row[3][i];
-      const float4 low_ab = (float4)(a.x, b.x, a.y, b.y), high_ab = (float4)(a.z, b.z, a.w, b.w);
-      const float4 low_cd = (float4)(c.x, d.x, c.y, d.y), high_cd = (float4)(c.z, d.z, c.w, d.w);
-      *(float4*)&hits->word[4 * i + 0][lane] = (float4)(low_ab.lo, low_cd.lo);
-      *(float4*)&hits->word[4 * i + 1][lane] = (float4)(low_ab.hi, low_cd.hi);
-      *(float4*)&hits->word[4 * i + 2][lane] = (float4)(high_ab.lo, high_cd.lo);
-      *(float4*)&hits->word[4 * i + 3][lane] = (float4)(high_ab.hi, high_cd.hi);
-    }
-  }
-}
-#endif
-
-DS_FN real hit_word(const LaneHits* hits, int i) {
-  return *(const real*)hits->word[i];
-}
-DS_FN real3 hit_word3(const LaneHits* hits, int i) {
-  return vec(hit_word(hits, i), hit_word(hits, i + 1), hit_word(hits, i + 2));
-}
-
-DS_FN Surface surface_of(const LaneHits* hits, real3 origin, real3 direction) {
-  const real3 wo = negate(direction);
-  const real3 p0 = hit_word3(hits, k_triangle_positions);
-  const real3 p1 = hit_word3(hits, k_triangle_positions + 3);
-  const real3 p2 = hit_word3(hits, k_triangle_positions + 6);
-  const real2 weights = hit_weights(origin, direction, p0, p1, p2);
-  const real b1 = weights.x;
-  const real b2 = weights.y;
-  const real b0 = 1.0f - b1 - b2;
-  Surface s;
-  const real3 e1 = sub(p1, p0);
-  const real3 e2 = sub(p2, p0);
-  // From the first corner along the edges: far from the origin a mean of the corners would be
-  // rounded several times in units of the coordinates, this is once.
-  s.position = add(p0, add_scaled(scale(e1, b1), e2, b2));
-  s.error = splat(position_error(p0, e1, e2));
-  const real3 own = triangle_normal(e1, e2);
-  s.outside = dot(own, wo) >= 0.0f;
-  const real side = choose(s.outside, (real)(1.0f), (real)(-1.0f));
-  s.normal = scale(own, side);
-  const real3 n0 = hit_word3(hits, k_triangle_normals);
-  const real3 n1 = hit_word3(hits, k_triangle_normals + 3);
-  const real3 n2 = hit_word3(hits, k_triangle_normals + 6);
-  const real3 interpolated = add_scaled(add_scaled(scale(n0, b0), n1, b1), n2, b2);
-  // Opposite corner normals can cancel; the triangle's own normal stands in.
-  const real3 smooth = choose(dot(interpolated, interpolated) > 1e-6f, unit(interpolated), own);
-  s.shading = facing_normal(scale(smooth, side), wo);
-  s.u = fma(b0, hit_word(hits, k_triangle_uvs),
-            fma(b1, hit_word(hits, k_triangle_uvs + 2), b2 * hit_word(hits, k_triangle_uvs + 4)));
-  s.v = fma(b0, hit_word(hits, k_triangle_uvs + 1),
-            fma(b1, hit_word(hits, k_triangle_uvs + 3), b2 * hit_word(hits, k_triangle_uvs + 5)));
-  return s;
 }
 
 #ifdef DS_MESH_LIGHTS
@@ -190,10 +139,10 @@ DS_FN Candidate choose(mask m, Candidate a, Candidate b) {
 #  define k_by_weight 0.9f
 
 DS_FN Candidate light_candidate(const LightSample* light, const Paths* paths, mask active,
-                                const Surface* s, const MaterialPoint* m, Frame frame,
-                                Viewer viewer) {
-  const BsdfValue bsdf = evaluate_material(m, viewer, to_local(frame, light->wi));
-  const real mis = choose(light->dirac, (real)(1.0f), power_heuristic(light->pdf, bsdf.pdf));
+                                const Surface* s, const MaterialPoint* m, const Leaving* l) {
+  const BsdfValue bsdf = evaluate_material(m, l->viewer, to_local(l->frame, light->wi));
+  const real other = leaving_pdf(l, light->wi, bsdf.pdf);
+  const real mis = choose(light->dirac, (real)(1.0f), power_heuristic(light->pdf, other));
   const real3 arriving = scale(light->radiance, mis / greater(light->pdf, (real)(1e-30f)));
   Candidate c;
   c.wi = light->wi;
@@ -213,14 +162,14 @@ DS_FN Candidate light_candidate(const LightSample* light, const Paths* paths, ma
 /// or behind the surface; else by equal chances, so that a bright light that cannot be seen does
 /// not hide the others. Measured: the shipped scenes' variance a sample falls by one to two thirds.
 DS_FN void ask_for_light(Paths* paths, mask active, const Surface* s, const MaterialPoint* m,
-                         Frame frame, Viewer viewer, Sampler sampler, natural pair, real choice,
+                         const Leaving* l, Sampler sampler, natural pair, real choice,
                          const SceneData* scene, const SceneTables* t) {
   const real2 u = sample_pair(sampler, pair + (uint)k_pair_light);
   Candidate candidates[k_most_rounds];
   real sum = (real)(0.0f), count = (real)(0.0f);
   for (uint i = 0; i < scene->light_rounds; ++i) {
     const LightSample light = sample_light(t->lights, scene, i, active, s->position, choice, u);
-    candidates[i] = light_candidate(&light, paths, active, s, m, frame, viewer);
+    candidates[i] = light_candidate(&light, paths, active, s, m, l);
     sum = sum + candidates[i].weight;
     count = count + choose(candidates[i].weight > 0.0f, (real)(1.0f), (real)(0.0f));
   }
@@ -257,16 +206,46 @@ DS_FN mask is_last(const Paths* paths, const ViewData* view) {
          (paths->glossy > view->depth_glossy) | (paths->specular > view->depth_specular);
 }
 
-/// Continues the paths by a BSDF sample; returns the lanes whose path ends here.
-DS_FN mask scatter(Paths* paths, mask active, const Surface* s, const MaterialPoint* m, Frame frame,
-                   Viewer viewer, Sampler sampler, natural pair, real lobe_choice, real roulette,
+#ifdef DS_GUIDED
+/// Turns the samples of a share of the lanes towards the guide's spheres, and weighs all by the
+/// density of both ways.
+DS_FN void guide_samples(BsdfSample* b, real3* wi, const MaterialPoint* m, const Leaving* l,
+                         real choice, real2 u) {
+  const mask there = l->guide.there;
+  const mask turned = there & (choice < k_guide_share);
+  const real3 towards = guide_sample(&l->guide, choice * (1.0f / k_guide_share), u);
+  const real3 turned_wi = to_local(l->frame, towards);
+  const BsdfValue value = evaluate_material(m, l->viewer, turned_wi);
+  const real3 f = choose(turned, value.value, scale(b->weight, b->pdf));
+  const real bsdf_pdf = choose(turned, value.pdf, b->pdf);
+  *wi = choose(turned, towards, *wi);
+  b->wi = choose(turned, turned_wi, b->wi);
+  const real pdf = leaving_pdf(l, *wi, bsdf_pdf);
+  const mask dirac = b->specular & !turned;
+  const real3 weight = choose(dirac, scale(b->weight, 1.0f / (1.0f - k_guide_share)),
+                              scale(f, 1.0f / greater(pdf, (real)(1e-30f))));
+  b->weight = choose(there, weight, b->weight);
+  b->pdf = choose(there & !dirac, pdf, b->pdf);
+  b->valid = choose_mask(turned, value.pdf > 0.0f, b->valid);
+  b->specular = b->specular & !turned;
+  b->glossy = b->glossy & !turned;
+  b->eta_scale = choose(turned, (real)(1.0f), b->eta_scale);
+}
+#endif
+
+/// Continues the paths by a BSDF sample, or along the guide; returns the lanes whose path ends
+/// here.
+DS_FN mask scatter(Paths* paths, mask active, const Surface* s, const MaterialPoint* m,
+                   const Leaving* l, Sampler sampler, natural pair, real2 lobe, real roulette,
                    const ViewData* view) {
-  real2 lobe;
-  lobe.x = lobe_choice;
+  const real guide_choice = lobe.y;
   lobe.y = (real)(0.0f);
-  const BsdfSample b =
-      sample_material(m, viewer, sample_pair(sampler, pair + (uint)k_pair_direction), lobe);
-  const real3 wi = to_world(frame, b.wi);
+  const real2 u = sample_pair(sampler, pair + (uint)k_pair_direction);
+  BsdfSample b = sample_material(m, l->viewer, u, lobe);
+  real3 wi = to_world(l->frame, b.wi);
+#ifdef DS_GUIDED
+  if (any_lane(active & l->guide.there)) guide_samples(&b, &wi, m, l, guide_choice, u);
+#endif
   // A sampled direction must leave on the side its lobe is on, also by the true surface: light does
   // not leak through.
   const real true_side = dot(wi, s->normal);
@@ -369,28 +348,31 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
   const natural pair = paths->vertices * (uint)k_pairs_vertex + (uint)k_pairs_camera;
   paths->vertices += choose_natural(active, (natural)(1u), (natural)(0u));
   const real2 choices = sample_pair(sampler, pair + (uint)k_pair_choices);
-  real lobe_choice = (real)(0.0f);
+  real2 lobe;
+  lobe.x = lobe.y = (real)(0.0f);
 #ifdef DS_LOBE_CHOICE
-  lobe_choice = sample_pair(sampler, pair + (uint)k_pair_lobe).x;
+  lobe = sample_pair(sampler, pair + (uint)k_pair_lobe);
 #endif
   MaterialPoint m;
   natural material =
       choose_natural(hit, bits_of(hit_word(&hits, k_triangle_material)), (natural)(0u));
 #ifdef DS_MIX_NUMBER
-  material = resolve_mix(t->materials, material, active, &s, &lobe_choice, &m);
+  material = resolve_mix(t->materials, material, active, &s, &lobe.x, &m);
 #else
   read_material(t->materials, material, active, &s, &m);
 #endif
-  const Frame frame = frame_around(s.shading);
-  Viewer viewer;
-  viewer.wo = to_local(frame, wo);
-  viewer.wo.z = greater(viewer.wo.z, (real)(1e-3f));
-  viewer.outside = s.outside;
-#ifdef DS_LIGHTS_SAMPLED
-  ask_for_light(paths, active, &s, &m, frame, viewer, sampler, pair, choices.x, scene, t);
+  Leaving leaving;
+  leaving.frame = frame_around(s.shading);
+  leaving.viewer.wo = to_local(leaving.frame, wo);
+  leaving.viewer.wo.z = greater(leaving.viewer.wo.z, (real)(1e-3f));
+  leaving.viewer.outside = s.outside;
+#ifdef DS_GUIDED
+  leaving.guide = guide_at(t->guide, active & DS_GUIDED(m.type), s.position);
 #endif
-  ends.closes =
-      scatter(paths, active, &s, &m, frame, viewer, sampler, pair, lobe_choice, choices.y, view);
+#ifdef DS_LIGHTS_SAMPLED
+  ask_for_light(paths, active, &s, &m, &leaving, sampler, pair, choices.x, scene, t);
+#endif
+  ends.closes = scatter(paths, active, &s, &m, &leaving, sampler, pair, lobe, choices.y, view);
   return ends;
 }
 
@@ -444,8 +426,8 @@ __kernel void trace_paths(
     const __global float* restrict triangles, const __global float* restrict materials,
     const __global float* restrict programs, const __global float* restrict lights,
     const __global float* restrict tables, const __global SceneData* restrict scene_data,
-    const __global ViewData* restrict view_data, const __global uint* restrict launch,
-    __global float* restrict film DS_RAY_COUNTS_ARGUMENT) {
+    const __global float* restrict guide, const __global ViewData* restrict view_data,
+    const __global uint* restrict launch, __global float* restrict film DS_RAY_COUNTS_ARGUMENT) {
   PixelQueue queue = pixel_queue(launch, (uint)get_global_id(0));
   if (queue.next >= queue.end) return;
   SceneTables t;
@@ -459,5 +441,6 @@ __kernel void trace_paths(
   t.lights.lights = lights;
   t.lights.tables = tables;
   t.lights.triangles = triangles;
+  t.guide = guide;
   trace_pixels(&queue, scene_data, view_data, &t, film DS_RAY_COUNTS_PASSED);
 }

@@ -5,6 +5,7 @@
 #include "tracer/device/scene_pack.h"
 #include "tracer/kernels/layout.h"
 #include "tracer/render/film.h"
+#include "tracer/render/guide.h"
 #include "tracer/render/images.h"
 #include "tracer/render/path_programs.h"
 #include "tracer/render/pixel_filter.h"
@@ -98,14 +99,63 @@ struct Tracer::State {
     Features numbering = wanted;
     numbering.lens = false;
     if (!packed_for || *packed_for != numbering) {
-      device_scene = upload(device, pack_scene(*scene, wanted, quality(), options.bvh_width));
-      packed_for = numbering;
+      take(pack_scene(*scene, wanted, quality(), options.bvh_width), numbering);
+    }
+    if (!guided) {
+      guide = device.upload(wanted.guide ? make_guide() : std::vector<std::uint32_t>(1));
+      guided = true;
+      packed.reset();
     }
     if (!program_for || *program_for != wanted || program_math != engine.math) {
       path_kernel = device.kernel(programs.get(wanted, engine.math), "trace_paths");
       program_for = wanted;
       program_math = engine.math;
     }
+  }
+
+  /// Uploads the scene; keeps what a guide will be made of.
+  void take(PackedScene scene_words, const Features& numbering) {
+    device_scene = upload(device, scene_words);
+    packed_for = numbering;
+    guided = false;
+    if (numbering.guide) packed = std::move(scene_words);
+  }
+
+  std::vector<std::uint32_t> make_guide() {
+    if (!has_rays_program) {
+      rays_kernel =
+          device.kernel(device.build(rays_program_text(), k_strict_options, options.cache_folder),
+                        "trace_nearest");
+      has_rays_program = true;
+    }
+    const TraceRays trace_rays = [&](std::span<const RayWords> rays) {
+      const std::size_t count = round_up(std::max<std::size_t>(rays.size(), 1), 64);
+      std::vector<RayWords> padded(rays.begin(), rays.end());
+      padded.resize(count, RayWords{{0, 0, 0}, {0, 0, 1}, 0});
+      const Buffer in = device.upload(padded);
+      const Buffer out = device.make_buffer(count * sizeof(RayAnswer));
+      rays_kernel.set(0, device_scene.nodes);
+      rays_kernel.set(1, device_scene.leaves);
+      rays_kernel.set(2, in);
+      rays_kernel.set(3, out);
+      device.run(rays_kernel, 0, count, 64);
+      std::vector<RayAnswer> answers(rays.size());
+      device.read(out, std::as_writable_bytes(std::span(answers)));
+      return answers;
+    };
+    constexpr std::size_t most = std::size_t{1} << 17;
+    const std::vector<Photon> photons =
+        trace_photons(*scene, *packed, *packed_for, most, trace_rays);
+    Vec3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
+    for (const Object& object : scene->objects) {
+      if (object.id != k_model_object_id) continue;
+      for (const Vec3& p : object.mesh.positions) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+      }
+    }
+    const Vec3 half = 0.5f * (high - low);
+    return guide_table(photons, low + half, std::sqrt(dot(half, half)));
   }
 
   /// Whether any light shines. In a scene where none does, no ray is traced.
@@ -146,6 +196,11 @@ struct Tracer::State {
   DeviceScene device_scene;
   std::optional<Features> packed_for, program_for;
   MathMode program_math = MathMode::strict;
+  std::optional<PackedScene> packed;
+  Buffer guide;
+  bool guided = false;  ///< `guide` is the scene's
+  Kernel rays_kernel;
+  bool has_rays_program = false;
   Program geometry_program;
   Buffer count_rows;
   RayCounts ray_counts;
@@ -200,9 +255,9 @@ class Tracer::Picture {
     sums_ = s_.device.upload(film_.planes);
     const DeviceScene& t = s_.device_scene;
     unsigned argument = 0;
-    const Buffer& v = view_;
+    const Buffer &v = view_, &guide = s_.guide;
     for (const Buffer* b : {&t.nodes, &t.leaves, &t.triangles, &t.materials, &t.programs, &t.lights,
-                            &t.tables, &t.data, &v})
+                            &t.tables, &t.data, &guide, &v})
       s_.path_kernel.set(argument++, *b);
     launch_argument_ = argument;
     s_.path_kernel.set(argument + 1, sums_);
@@ -355,9 +410,7 @@ Geometry Tracer::trace_geometry(const Camera& camera, int width, int height) {
     // Any numbering will do: mask and depth ask no material.
     Features features = features_of(*s.scene, camera);
     features.lens = false;
-    s.device_scene =
-        upload(s.device, pack_scene(*s.scene, features, s.quality(), s.options.bvh_width));
-    s.packed_for = features;
+    s.take(pack_scene(*s.scene, features, s.quality(), s.options.bvh_width), features);
   }
   if (!s.has_geometry_program) {
     s.geometry_program =

@@ -63,6 +63,8 @@ TEST(Effects, AreSimulatedWhereTheProgramHoldsTheirCode) {
               has("#define DS_ESCAPE_LIGHTS("));
     EXPECT_EQ(find(effects, "transport", "choice among lobes").simulated,
               has("#define DS_LOBE_CHOICE\n"));
+    EXPECT_EQ(find(effects, "transport", "guide to caustics").simulated,
+              has("#define DS_GUIDED(type)"));
   }
 }
 

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/render/photons.h"
+
+#include "tracer/base/error.h"
+#include "tracer/kernels/all_nodes.h"
+#include "tracer/scene/sdl.h"
+#include "tracer/scene/type_tables.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <string_view>
+
+namespace ds {
+namespace {
+
+using kernels::natural;
+using kernels::real2;
+using kernels::real3;
+
+constexpr int k_most_bounces = 4;
+/// Pairs of dimensions of a photon's sampler.
+enum { k_pair_start, k_pair_place, k_pair_light, k_pair_bounces };
+
+Vec3 plain(real3 v) {
+  return {v.x, v.y, v.z};
+}
+
+/// Words as the kernels' functions take them.
+std::vector<float> floats(const Words& words) {
+  std::vector<float> values(words.words().size());
+  if (!values.empty())
+    std::memcpy(values.data(), words.words().data(), values.size() * sizeof(float));
+  return values;
+}
+
+kernels::BsdfSample sample_shiny(std::string_view material, const float* inputs,
+                                 kernels::Viewer viewer, real2 u, real2 lobe) {
+  if (material == "glossy2") return kernels::glossy2_sample(inputs, viewer, u, lobe);
+  if (material == "metal2") return kernels::metal2_sample(inputs, viewer, u, lobe);
+  if (material == "mirror") return kernels::mirror_sample(inputs, viewer, u, lobe);
+  if (material == "glass") return kernels::glass_sample(inputs, viewer, u, lobe);
+  return kernels::no_sample();
+}
+
+kernels::LightSample sample_light(std::string_view kind, kernels::LightTables tables, natural at,
+                                  real3 from, real2 u) {
+  if (kind == "mesh") return kernels::mesh_sample(tables, at, from, u);
+  if (kind == "point") return kernels::point_sample(tables, at, from, u);
+  if (kind == "spot") return kernels::spot_sample(tables, at, from, u);
+  if (kind == "sun") return kernels::sun_sample(tables, at, from, u);
+  return kernels::no_light();
+}
+
+/// What there is to know of a material here.
+struct Substance {
+  std::string_view prefix;    ///< kernel prefix; "mix" for one
+  std::vector<float> inputs;  ///< as the kernels read them
+  int children[2] = {-1, -1};
+  bool shiny = false, dull = false;  ///< itself or a part of it
+};
+
+std::vector<Substance> substances(const Scene& scene) {
+  std::vector<Substance> list;
+  for (const Material& material : scene.materials) {
+    const NodeType& type = material_types()[static_cast<std::size_t>(material.type)];
+    Substance s;
+    s.prefix = type.kernel_prefix;
+    s.shiny = is_shiny(s.prefix);
+    s.dull = is_dull(s.prefix);
+    for (std::size_t i = 0; i < type.inputs.size(); ++i) {
+      const bool wide = type.inputs[i].width == 3;
+      const float instead = wide ? 0.5f : 0.1f;
+      const Vec3 value = material.inputs[i].texture < 0 ? material.inputs[i].constant
+                                                        : Vec3{instead, instead, instead};
+      s.inputs.push_back(value.x);
+      if (wide) s.inputs.insert(s.inputs.end(), {value.y, value.z});
+    }
+    for (int i = 0; i < 2; ++i) {
+      s.children[i] = material.children[i];
+      if (s.children[i] < 0) continue;
+      const Substance& child = list[static_cast<std::size_t>(s.children[i])];
+      s.shiny = s.shiny || child.shiny;
+      s.dull = s.dull || child.dull;
+    }
+    list.push_back(std::move(s));
+  }
+  return list;
+}
+
+/// A photon on its way from a shiny surface.
+struct Flight {
+  natural number;  ///< its sampler's
+  natural triangle;
+  float b1, b2;
+  real3 from;      ///< unit: to where it came from
+  real3 source{};  ///< where it left last
+  float power;
+};
+
+/// The surface under a flight, seen from where it came from.
+kernels::Surface surface_under(const std::vector<float>& triangles, const Flight& flight) {
+  const float* row = triangles.data() + std::size_t{flight.triangle} * kernels::k_triangle_words;
+  const auto corner = [&](int offset, int i) {
+    return kernels::load3(row, static_cast<natural>(offset + 3 * i));
+  };
+  const real3 p0 = corner(kernels::k_triangle_positions, 0);
+  const real3 e1 = sub(corner(kernels::k_triangle_positions, 1), p0);
+  const real3 e2 = sub(corner(kernels::k_triangle_positions, 2), p0);
+  kernels::Surface s{};
+  s.position = add(p0, add_scaled(scale(e1, flight.b1), e2, flight.b2));
+  s.error = kernels::splat(kernels::position_error(p0, e1, e2));
+  const real3 own = kernels::triangle_normal(e1, e2);
+  s.outside = dot(own, flight.from) >= 0;
+  const float side = s.outside ? 1.0f : -1.0f;
+  s.normal = scale(own, side);
+  const real3 mean = add_scaled(
+      add_scaled(scale(corner(kernels::k_triangle_normals, 0), 1 - flight.b1 - flight.b2),
+                 corner(kernels::k_triangle_normals, 1), flight.b1),
+      corner(kernels::k_triangle_normals, 2), flight.b2);
+  const real3 smooth = dot(mean, mean) > 1e-6f ? unit(mean) : own;
+  s.shading = kernels::facing_normal(scale(smooth, side), flight.from);
+  return s;
+}
+
+RayWords ray_from(real3 origin, real3 direction, float t_max) {
+  return {{origin.x, origin.y, origin.z}, {direction.x, direction.y, direction.z}, t_max};
+}
+
+class PhotonTracer {
+ public:
+  PhotonTracer(const Scene& scene, const PackedScene& packed, const Features& features,
+               const TraceRays& trace)
+      : features_(features),
+        trace_(trace),
+        substances_(substances(scene)),
+        triangles_(floats(packed.triangles)),
+        lights_(floats(packed.lights)),
+        tables_(floats(packed.tables)) {
+    double sum = 0;
+    const std::vector<std::uint32_t> first = first_triangles(scene);
+    for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+      const Object& object = scene.objects[o];
+      if (object.id != k_model_object_id || object.material < 0 ||
+          !substances_[static_cast<std::size_t>(object.material)].shiny)
+        continue;
+      for (std::size_t i = 0; i < object.mesh.triangles.size(); ++i) {
+        const auto number = static_cast<natural>(first[o] + i);
+        sum += area(number);
+        shiny_.push_back(number);
+        shiny_until_.push_back(sum);
+      }
+    }
+    for (natural i = 0; i < packed.data.light_count; ++i) {
+      const float kind = lights_[i * kernels::k_light_words + kernels::k_light_kind];
+      const std::string& name = features.lights[std::bit_cast<std::uint32_t>(kind)];
+      if (is_small_light(name) &&
+          lights_[i * kernels::k_light_words + kernels::k_light_probability] > 0)
+        sampled_.push_back({i, name});
+    }
+  }
+
+  std::vector<Photon> photons(std::size_t most) {
+    if (shiny_.empty() || !(shiny_until_.back() > 0) || sampled_.empty()) return {};
+    std::vector<Flight> flights = start(most);
+    std::vector<Photon> found;
+    for (int bounce = 0; bounce < k_most_bounces && !flights.empty(); ++bounce)
+      flights = go_on(flights, bounce, found);
+    return found;
+  }
+
+ private:
+  struct Sampled {
+    natural row;
+    std::string_view kind;
+  };
+
+  double area(natural triangle) const {
+    const float* row = triangles_.data() + std::size_t{triangle} * kernels::k_triangle_words;
+    const auto at = [&](int i) { return Vec3d{row[3 * i], row[3 * i + 1], row[3 * i + 2]}; };
+    const Vec3d normal = cross(at(1) - at(0), at(2) - at(0));
+    return std::sqrt(dot(normal, normal)) / 2;
+  }
+  const Substance& substance_of(natural triangle) const {
+    const float word = triangles_[std::size_t{triangle} * kernels::k_triangle_words +
+                                  kernels::k_triangle_material];
+    return substances_[std::bit_cast<std::uint32_t>(word)];
+  }
+  static kernels::Sampler sampler(natural number) { return kernels::sampler_for(0, 0, 0, number); }
+
+  /// On the shiny triangles, where a light shines on them.
+  std::vector<Flight> start(std::size_t most) const {
+    std::vector<Flight> flights;
+    std::vector<RayWords> rays;
+    const kernels::LightTables tables{lights_.data(), tables_.data(), triangles_.data()};
+    for (std::size_t i = 0; i < most; ++i) {
+      Flight flight{};
+      flight.number = static_cast<natural>(i);
+      const kernels::Sampler s = sampler(flight.number);
+      const real2 which = sample_pair(s, k_pair_start);
+      const double until = double{which.x} * shiny_until_.back();
+      const auto place = std::upper_bound(shiny_until_.begin(), shiny_until_.end() - 1, until);
+      flight.triangle = shiny_[static_cast<std::size_t>(place - shiny_until_.begin())];
+      const real2 u = sample_pair(s, k_pair_place);
+      const float root = std::sqrt(u.x);
+      flight.b1 = root * (1 - u.y);
+      flight.b2 = root * u.y;
+      const auto light = static_cast<std::size_t>(double{which.y} * double(sampled_.size()));
+      const Sampled& from = sampled_[std::min(light, sampled_.size() - 1)];
+      flight.from = kernels::vec(0, 0, 1);
+      const kernels::Surface at = surface_under(triangles_, flight);
+      const kernels::LightSample l = sample_light(
+          from.kind, tables, from.row * kernels::k_light_words + kernels::k_light_parameters,
+          at.position, sample_pair(s, k_pair_light));
+      if (!(l.pdf > 0)) continue;
+      flight.from = l.wi;
+      const kernels::Surface seen = surface_under(triangles_, flight);
+      flight.power = luminance(l.radiance) / l.pdf * dot(seen.normal, l.wi);
+      if (!(flight.power > 0) || !std::isfinite(flight.power)) continue;
+      const real3 origin = offset_origin(seen.position, seen.error, seen.normal, l.wi);
+      const real3 way = sub(l.target, origin);
+      flights.push_back(flight);
+      rays.push_back(
+          ray_from(origin, l.wi, l.bounded ? std::sqrt(dot(way, way)) * 0.9999f : 1e30f));
+    }
+    const std::vector<RayAnswer> answers = trace_(rays);
+    std::vector<Flight> lit;
+    for (std::size_t i = 0; i < flights.size(); ++i)
+      if (answers[i].triangle == k_none) lit.push_back(flights[i]);
+    return lit;
+  }
+
+  /// Off the shiny surfaces they are on, to the next.
+  std::vector<Flight> go_on(std::vector<Flight>& flights, int bounce,
+                            std::vector<Photon>& found) const {
+    std::vector<Flight> gone;
+    std::vector<RayWords> rays;
+    for (Flight& flight : flights) {
+      const kernels::Sampler s = sampler(flight.number);
+      const auto pair = static_cast<natural>(k_pair_bounces + 2 * bounce);
+      real2 lobe = sample_pair(s, pair + 1);
+      const Substance* material = &substance_of(flight.triangle);
+      while (material->prefix == "mix") {
+        const bool second = lobe.y < material->inputs[kernels::mix_amount];
+        material = &substances_[static_cast<std::size_t>(material->children[second ? 1 : 0])];
+        lobe.y = lobe.y < 0.5f ? 2 * lobe.y : 2 * lobe.y - 1;
+      }
+      lobe.y = 0;
+      const kernels::Surface at = surface_under(triangles_, flight);
+      const kernels::Frame frame = kernels::frame_around(at.shading);
+      kernels::Viewer viewer{to_local(frame, flight.from), at.outside};
+      viewer.wo.z = std::max(viewer.wo.z, 1e-3f);
+      const kernels::BsdfSample b = sample_shiny(material->prefix, material->inputs.data(), viewer,
+                                                 sample_pair(s, pair), lobe);
+      if (!b.valid || !(b.glossy || b.specular)) continue;
+      const real3 wi = unit(to_world(frame, b.wi));
+      const float side = dot(wi, at.normal);
+      flight.power *= luminance(b.weight);
+      if ((b.wi.z > 0) != (side > 0) || !(flight.power > 0) || !std::isfinite(flight.power))
+        continue;
+      flight.source = at.position;
+      flight.from = negate(wi);
+      gone.push_back(flight);
+      rays.push_back(ray_from(offset_origin(at.position, at.error, at.normal, wi), wi, 1e30f));
+    }
+    const std::vector<RayAnswer> answers = trace_(rays);
+    std::vector<Flight> next;
+    for (std::size_t i = 0; i < gone.size(); ++i) {
+      if (answers[i].triangle == k_none) continue;
+      Flight& flight = gone[i];
+      flight.triangle = answers[i].triangle;
+      flight.b1 = answers[i].b1;
+      flight.b2 = answers[i].b2;
+      const Substance& material = substance_of(flight.triangle);
+      if (material.dull)
+        found.push_back({plain(surface_under(triangles_, flight).position), plain(flight.source),
+                         flight.power});
+      if (material.shiny) next.push_back(flight);
+    }
+    return next;
+  }
+
+  const Features& features_;
+  const TraceRays& trace_;
+  std::vector<Substance> substances_;
+  std::vector<float> triangles_, lights_, tables_;
+  std::vector<natural> shiny_;
+  std::vector<double> shiny_until_;  ///< cumulative areas
+  std::vector<Sampled> sampled_;
+};
+
+}  // namespace
+
+std::vector<Photon> trace_photons(const Scene& scene, const PackedScene& packed,
+                                  const Features& features, std::size_t most,
+                                  const TraceRays& trace) {
+  return PhotonTracer(scene, packed, features, trace).photons(most);
+}
+
+}  // namespace ds
