@@ -94,6 +94,22 @@ TEST_F(BuildTest, ARecipeOfMasksAndDepthsTracesNoPath) {
   EXPECT_EQ(build().reused, k_images);
 }
 
+TEST_F(BuildTest, ARecipeOfPicturesAloneTracesNoGeometry) {
+  request.overrides = {"outputs.mask=false", "outputs.depth=false"};
+  const BuildResult result = build();
+  EXPECT_TRUE(result.ok());
+  EXPECT_EQ(result.built, k_images);
+  EXPECT_THAT(calls.traced, SizeIs(k_images));
+  EXPECT_THAT(calls.geometry, IsEmpty());
+  EXPECT_EQ(contents().size(), k_images + 3) << "no mask, no depth";
+  build({.force = true});
+  EXPECT_THAT(calls.geometry, IsEmpty());
+  // A mask asked for later traces itself alone.
+  request.overrides = {"outputs.depth=false"};
+  EXPECT_EQ(build().traced_samples, 0U);
+  EXPECT_THAT(calls.geometry, SizeIs(k_images));
+}
+
 TEST_F(BuildTest, DepthTracesGeometryOnly) {
   build();
   request.overrides = {"outputs.depth=exr"};

@@ -232,8 +232,21 @@ TEST(RayCounts, MasksAndDepthsTraceNoPath) {
   Tracer tracer(options);
   tracer.set_scene(scene);
   tracer.trace_geometry(from_above(), k_width, k_height);
-  EXPECT_EQ(tracer.ray_counts(), RayCounts{});
+  RayCounts wanted;
+  wanted.geometry = std::uint64_t{k_width} * k_height;
+  EXPECT_EQ(tracer.ray_counts(), wanted);
   EXPECT_EQ(tracer.programs().programs, 0U) << "no path program is made";
+}
+
+TEST(RayCounts, APictureTracesNoMaskUnlessItsErrorIsOfTheModel) {
+  Scene scene = floor_of({0.5f, 0.5f, 0.5f});
+  scene.lights.push_back(pictures::point_light({0, 0, 2}, {1, 1, 1}));
+  EXPECT_EQ(count(scene).rays.geometry, 0U);
+  EngineSettings engine = small_engine();
+  engine.target = ErrorTarget{1, 16, scene.tone_map};
+  EXPECT_EQ(count(scene, false, engine).rays.geometry, 0U);
+  engine.target->region = ErrorRegion::model;
+  EXPECT_EQ(count(scene, false, engine).rays.geometry, std::uint64_t{k_width} * k_height);
 }
 
 TEST(RayCounts, AreNoneWhereTheyWereNotAskedFor) {
@@ -242,6 +255,7 @@ TEST(RayCounts, AreNoneWhereTheyWereNotAskedFor) {
   Tracer tracer(pictures::tracer_options());
   tracer.set_scene(scene);
   tracer.trace(from_above(), small_engine());
+  tracer.trace_geometry(from_above(), k_width, k_height);
   EXPECT_EQ(tracer.ray_counts(), RayCounts{});
 }
 

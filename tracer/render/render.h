@@ -119,9 +119,9 @@ struct ProgramCounts {
 };
 
 /// Rays that a picture's paths traced; a camera ray goes on behind an object that the camera does
-/// not see as another one.
+/// not see as another one. `geometry`: of masks and depths, one a pixel.
 struct RayCounts {
-  std::uint64_t camera = 0, extension = 0, shadow = 0;
+  std::uint64_t camera = 0, extension = 0, shadow = 0, geometry = 0;
 
   bool operator==(const RayCounts&) const = default;
 };
@@ -153,7 +153,7 @@ class Tracer {
   /// program is known already.
   bool prepare_ahead(const Scene& scene, const Camera& camera, const EngineSettings& engine);
   ProgramCounts programs() const;
-  /// Of all pictures traced, where TracerOptions::count_rays was set; else none.
+  /// Of all pictures and geometry traced, where TracerOptions::count_rays was set; else none.
   RayCounts ray_counts() const;
   Geometry trace_geometry(const Camera& camera, int width, int height);
   std::string device_name() const;

@@ -434,6 +434,7 @@ Geometry Tracer::trace_geometry(const Camera& camera, int width, int height) {
   k.set(4, objects);
   k.set(5, depths);
   s.device.run(k, 0, round_up(pixels, s.local_size), s.local_size);
+  if (s.options.count_rays) s.ray_counts.geometry += pixels;
   Geometry geometry{width, height, std::vector<std::uint8_t>(pixels), std::vector<float>(pixels)};
   std::vector<std::uint32_t> ids(pixels);
   s.device.read(objects, std::as_writable_bytes(std::span(ids)));
