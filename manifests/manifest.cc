@@ -72,32 +72,40 @@ json to_json_value(const ImageRecord& image) {
             {"engine", parts[4].hex()}}}};
 }
 
+json counts_object(const std::vector<std::pair<std::string, std::uint64_t>>& counts) {
+  json object = json::object();
+  for (const auto& [name, count] : counts)
+    object[name] = count;
+  return object;
+}
+
 json to_json_value(const DatasetRecord& dataset) {
-  json counts = json::object();
-  for (const auto& [name, count] : dataset.counts)
-    counts[name] = count;
   json licences = json::object();
   for (const auto& [asset, text] : dataset.licences)
     licences[asset] = text;
-  return {{"format", k_manifest_format},
-          {"name", dataset.name},
-          {"licence", dataset.licence},
-          {"recipe", dataset.recipe_text},
-          {"dsbuild_version", dataset.dsbuild_version},
-          {"seed", dataset.seed},
-          {"class_paths", dataset.class_paths},
-          {"counts", std::move(counts)},
-          {"licences", std::move(licences)},
-          {"conventions",
-           {{"world", "right-handed, z up, metres"},
-            {"camera_to_world",
-             "4x4, row-major, column vectors; opencv camera: x right, y down, z forward"},
-            {"intrinsics",
-             "3x3, row-major, pixels; origin at the top left corner, pixel centres at .5"},
-            {"depth", "planar z along the camera's z axis in metres, 0 where nothing is hit"},
-            {"mask",
-             "255 where the ray through the pixel's centre and the pinhole meets the model first, "
-             "else 0"}}}};
+  json object{
+      {"format", k_manifest_format},
+      {"name", dataset.name},
+      {"licence", dataset.licence},
+      {"recipe", dataset.recipe_text},
+      {"dsbuild_version", dataset.dsbuild_version},
+      {"seed", dataset.seed},
+      {"class_paths", dataset.class_paths},
+      {"counts", counts_object(dataset.counts)},
+      {"licences", std::move(licences)},
+      {"conventions",
+       {{"world", "right-handed, z up, metres"},
+        {"camera_to_world",
+         "4x4, row-major, column vectors; opencv camera: x right, y down, z forward"},
+        {"intrinsics",
+         "3x3, row-major, pixels; origin at the top left corner, pixel centres at .5"},
+        {"depth", "planar z along the camera's z axis in metres, 0 where nothing is hit"},
+        {"mask",
+         "255 where the ray through the pixel's centre and the pinhole meets the model first, "
+         "else 0"}}}};
+  for (const auto& [model, damage] : dataset.mended_models)
+    object["mended_models"][model] = counts_object(damage);
+  return object;
 }
 
 /// One line a path in checksums.xxh128, and `xxhsum -c` reads no escapes.

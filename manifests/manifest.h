@@ -4,6 +4,7 @@
 #include "manifests/camera_geometry.h"
 #include "tracer/base/hash.h"
 #include "tracer/render/render.h"
+#include "tracer/scene/mesh.h"
 
 #include <array>
 #include <cstdint>
@@ -68,6 +69,9 @@ struct DatasetRecord {
   std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< "images", "models", "train", ...
   std::vector<std::pair<std::string, std::string>>
       licences;  ///< asset -> licence text found beside it
+  /// Model -> what its file held that no mesh can, and how often, by MeshReport's names. Only
+  /// models that were mended; "mended_models" is not there where none was.
+  std::vector<std::pair<std::string, MendedDamage>> mended_models{};
 };
 
 /// The line without its line break. Numbers must be finite and texts UTF-8: Error(asset) otherwise.

@@ -224,6 +224,19 @@ void read_class_paths(Fields& fields, std::vector<std::string>& to) {
   }
 }
 
+/// Not there where no model was mended.
+void read_mended_models(const json& owner, const SourcePlace& place, Diagnostics& diagnostics,
+                        DatasetRecord& dataset) {
+  if (!owner.contains("mended_models")) return;
+  Fields fields(owner, place, diagnostics);
+  read_members(fields, owner, place, diagnostics, "mended_models", dataset.mended_models,
+               [&](Fields& models, const char* model, MendedDamage& to) {
+                 read_members(
+                     models, owner["mended_models"], place, diagnostics, model, to,
+                     [](Fields& f, const char* name, std::uint64_t& n) { f.count(name, n); });
+               });
+}
+
 std::string read_manifest_file(const fs::path& file) {
   if (!fs::is_regular_file(file))
     fail(ErrorKind::asset, "{}: must be there: a dataset has a manifest", file.string());
@@ -259,6 +272,7 @@ DatasetRecord dataset_from_json(const std::string& text, const std::string& file
                  [](Fields& f, const char* name, std::uint64_t& to) { f.count(name, to); });
     read_members(fields, *object, place, diagnostics, "licences", dataset.licences,
                  [](Fields& f, const char* name, std::string& to) { f.text(name, to); });
+    read_mended_models(*object, place, diagnostics, dataset);
   }
   diagnostics.throw_if_any();
   return dataset;

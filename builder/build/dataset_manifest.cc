@@ -119,7 +119,8 @@ ImageRecord image_record(const PlannedImage& image, Database& database) {
   return record;
 }
 
-DatasetRecord dataset_record(const Recipe& recipe, const std::vector<ImageRecord>& images) {
+DatasetRecord dataset_record(const Recipe& recipe, const std::map<std::string, MendedModel>& mended,
+                             const std::vector<ImageRecord>& images) {
   DatasetRecord record;
   record.name = recipe.name;
   record.licence = recipe.licence;
@@ -137,14 +138,17 @@ DatasetRecord dataset_record(const Recipe& recipe, const std::vector<ImageRecord
   record.counts = {{"images", images.size()}, {"models", models.size()}};
   for (const auto& [split, count] : splits)
     record.counts.emplace_back(split, count);
+  for (const auto& [model, what] : mended)
+    if (models.contains(model)) record.mended_models.emplace_back(model, what.damage);
   add_licences(record, "models", recipe.models);
   add_licences(record, "materials", recipe.materials);
   add_licences(record, "environments", recipe.environments);
   return record;
 }
 
-bool update_manifest(Dataset& dataset, const std::vector<ImageRecord>& images) {
-  const DatasetRecord record = dataset_record(dataset.recipe, images);
+bool update_manifest(Dataset& dataset, const std::map<std::string, MendedModel>& mended,
+                     const std::vector<ImageRecord>& images) {
+  const DatasetRecord record = dataset_record(dataset.recipe, mended, images);
   const Hash128 wanted = fingerprint(record, images);
   Database& database = *dataset.database;
   if (manifest_stands(dataset, wanted, database.placed_files(dataset.row.id))) return false;

@@ -5,6 +5,7 @@
 #include "builder/build/plan.h"
 #include "manifests/manifest.h"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,13 @@ std::string program_version();
 /// does not know one.
 ImageRecord image_record(const PlannedImage& image, Database& database);
 
-/// What the manifest says of the dataset as a whole, for the images it lists.
-DatasetRecord dataset_record(const Recipe& recipe, const std::vector<ImageRecord>& images);
+/// What the manifest says of the dataset as a whole, for the images it lists. `mended`: Plan's.
+DatasetRecord dataset_record(const Recipe& recipe, const std::map<std::string, MendedModel>& mended,
+                             const std::vector<ImageRecord>& images);
 
 /// Writes the manifest of these images, unless it stands there already as this would write it.
 /// Returns whether it wrote.
-bool update_manifest(Dataset& dataset, const std::vector<ImageRecord>& images);
+bool update_manifest(Dataset& dataset, const std::map<std::string, MendedModel>& mended,
+                     const std::vector<ImageRecord>& images);
 
 }  // namespace ds

@@ -206,7 +206,7 @@ void Execution::finish() {
     if (record.film.capped && !image.elsewhere)
       result_.capped.emplace_back(record.id, record.film.developed_high.value_or(0));
   }
-  update_manifest(dataset_, records);
+  update_manifest(dataset_, plan_.mended, records);
 }
 
 void Execution::log() {

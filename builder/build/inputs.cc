@@ -25,7 +25,7 @@ const T& Inputs::once(std::map<std::filesystem::path, Read<T>>& known,
   return *entry.value;
 }
 
-Hash128 Inputs::read_geometry(const std::filesystem::path& file) {
+KnownModel Inputs::look_at_model(const std::filesystem::path& file) {
   // The stamp is taken before the bytes are read: a write in between gives a newer one, which is
   // then unknown.
   const std::optional<FileStamp> stamp = stamp_of(file);
@@ -33,17 +33,20 @@ Hash128 Inputs::read_geometry(const std::filesystem::path& file) {
   if (stamp) content = database_.find_content(file, *stamp);
   const bool new_content = !content;
   if (!content) content = hash_file(file).xxh128;
-  std::optional<Hash128> geometry = database_.find_geometry(*content, k_host_render_version);
-  const bool new_geometry = !geometry;
-  if (!geometry) geometry = geometry_hash(read_model(file).mesh);
-  if (new_content || new_geometry)
-    new_hashes_.push_back(
-        {file, stamp && !is_racy(*stamp) ? stamp : std::nullopt, *content, *geometry});
-  return *geometry;
+  std::optional<KnownModel> known = database_.find_model(*content, k_host_render_version);
+  const bool new_model = !known;
+  if (!known) {
+    const Model model = read_model(file);
+    known = KnownModel{geometry_hash(model.mesh), mended_damage(model.report)};
+  }
+  if (new_content || new_model)
+    new_models_.push_back(
+        {file, stamp && !is_racy(*stamp) ? stamp : std::nullopt, *content, *known});
+  return *known;
 }
 
-Hash128 Inputs::model_geometry(const std::filesystem::path& file) {
-  return once(geometries_, file, [this](const auto& path) { return read_geometry(path); });
+const KnownModel& Inputs::model(const std::filesystem::path& file) {
+  return once(models_, file, [this](const auto& path) { return look_at_model(path); });
 }
 
 Mesh Inputs::model_mesh(const std::filesystem::path& file, const NormaliseOptions& options) {
@@ -62,14 +65,14 @@ const Scene& Inputs::environment(const std::filesystem::path& folder) {
 }
 
 void Inputs::remember() {
-  if (new_hashes_.empty()) return;
+  if (new_models_.empty()) return;
   Transaction transaction(database_.connection());
-  for (const NewHash& hash : new_hashes_) {
-    if (hash.stamp) database_.put_content(hash.file, *hash.stamp, hash.content);
-    database_.put_geometry(hash.content, k_host_render_version, hash.geometry);
+  for (const NewModel& model : new_models_) {
+    if (model.stamp) database_.put_content(model.file, *model.stamp, model.content);
+    database_.put_model(model.content, k_host_render_version, model.known);
   }
   transaction.commit();
-  new_hashes_.clear();
+  new_models_.clear();
 }
 
 }  // namespace ds

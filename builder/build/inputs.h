@@ -23,14 +23,16 @@ class Inputs {
   explicit Inputs(Database& database) : database_(database) {}
 
   /// geometry_hash of the model as read, before normalisation. Throws what `read_model` throws.
-  Hash128 model_geometry(const std::filesystem::path& file);
+  Hash128 model_geometry(const std::filesystem::path& file) { return model(file).geometry; }
+  /// What reading it mended; throws likewise.
+  const MendedDamage& model_damage(const std::filesystem::path& file) { return model(file).damage; }
   /// Reads and normalises. Throws Error(asset) where the file is no longer the one `model_geometry`
   /// saw.
   Mesh model_mesh(const std::filesystem::path& file, const NormaliseOptions& options);
   const Scene& material(const std::filesystem::path& file);
   const Scene& environment(const std::filesystem::path& folder);
 
-  /// Writes the hashes found since the last call into the database.
+  /// Writes what was found of models since the last call into the database.
   void remember();
 
  private:
@@ -42,18 +44,20 @@ class Inputs {
   template <typename T, typename Reader>
   const T& once(std::map<std::filesystem::path, Read<T>>& known, const std::filesystem::path& path,
                 const Reader& reader);
-  Hash128 read_geometry(const std::filesystem::path& file);
+  const KnownModel& model(const std::filesystem::path& file);
+  KnownModel look_at_model(const std::filesystem::path& file);
 
-  struct NewHash {
+  struct NewModel {
     std::filesystem::path file;
     std::optional<FileStamp> stamp;
-    Hash128 content, geometry;
+    Hash128 content;
+    KnownModel known;
   };
 
   Database& database_;
-  std::map<std::filesystem::path, Read<Hash128>> geometries_;
+  std::map<std::filesystem::path, Read<KnownModel>> models_;
   std::map<std::filesystem::path, Read<Scene>> materials_, environments_;
-  std::vector<NewHash> new_hashes_;
+  std::vector<NewModel> new_models_;
 };
 
 }  // namespace ds

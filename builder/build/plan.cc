@@ -136,6 +136,8 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
         image.spec.engine.target->tone_map =
             tone_map_of(dataset.recipe, inputs.environment(image.spec.environment_folder));
       image.keys = keys.keys(image.spec);
+      if (const MendedDamage& damage = inputs.model_damage(image.spec.model_file); !damage.empty())
+        plan.mended.try_emplace(image.spec.model_name, image.spec.model_file, damage);
       planner.plan(image);
     } catch (const DamagedDatabase&) {
       throw;

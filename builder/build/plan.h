@@ -8,6 +8,8 @@
 #include "builder/build/texts.h"
 #include "builder/recipe/recipe.h"
 
+#include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,6 +48,12 @@ struct PlannedImage {
   std::uint64_t samples() const;
 };
 
+/// A model whose file is damaged and was mended.
+struct MendedModel {
+  std::filesystem::path file;
+  MendedDamage damage;
+};
+
 /// A build, before anything is done. A pure reading of recipe, files and database, but for
 /// `Inputs`' memory of hashes.
 struct Plan {
@@ -53,6 +61,7 @@ struct Plan {
   std::vector<std::string> to_remove;  ///< files dsbuild made, of the shard's images, that no image
                                        ///< names any more; relative to the folder
   TextSet texts;
+  std::map<std::string, MendedModel> mended;  ///< by model name, of all shards' images
 };
 
 /// `force`: every image of the shard is traced again. `inputs` must outlive what is executed of the

@@ -4,11 +4,13 @@
 #include "builder/cmd/progress.h"
 #include "builder/cmd/stop_signal.h"
 #include "builder/cmd/verbs.h"
+#include "tracer/base/log.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdio>
+#include <set>
 
 namespace ds {
 namespace {
@@ -66,6 +68,18 @@ void print_result(const BuildResult& result, const Dataset& dataset) {
              (dataset.folder / "manifest" / "images.jsonl").string());
 }
 
+/// What was wrong with the models of the shard's images: a line each.
+void warn_of_mended(const Plan& plan) {
+  std::set<std::string> shown;
+  for (const PlannedImage& image : plan.images) {
+    const auto mended = plan.mended.find(image.spec.model_name);
+    if (image.elsewhere || mended == plan.mended.end()) continue;
+    if (shown.insert(mended->first).second)
+      warn(fmt::format("{}: mended: {}", mended->second.file.string(),
+                       to_text(mended->second.damage)));
+  }
+}
+
 int dry_run(const Arguments& arguments, const Plan& plan) {
   print_plan(arguments.json ? stderr : stdout, plan);
   const PlanCounts counts = count(plan);
@@ -92,6 +106,7 @@ int run_build(const Arguments& arguments) {
       open_dataset(arguments.request(), arguments.dry_run ? Access::look : Access::build, disk);
   Inputs inputs(*dataset.database);
   const Plan plan = make_plan(dataset, inputs, arguments.force, shard);
+  warn_of_mended(plan);
   if (arguments.dry_run) return dry_run(arguments, plan);
   if (arguments.explain) print_plan(arguments.json ? stderr : stdout, plan);
 

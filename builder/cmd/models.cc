@@ -11,37 +11,17 @@
 namespace ds {
 namespace {
 
-/// One row per count of the report, so that table and JSON cannot disagree.
-struct Column {
-  const char* name;   ///< JSON
-  const char* title;  ///< table
-  std::uint64_t MeshReport::*count;
-};
-constexpr Column k_columns[] = {
-    {"vertices", "vertices", &MeshReport::vertices},
-    {"faces", "faces", &MeshReport::faces},
-    {"n_gons", "n-gons", &MeshReport::n_gons},
-    {"triangles", "triangles", &MeshReport::triangles},
-    {"triangles_kept", "kept", &MeshReport::triangles_kept},
-    {"zero_area", "zero-area", &MeshReport::zero_area},
-    {"duplicate_faces", "duplicate", &MeshReport::duplicate_faces},
-    {"non_finite", "non-finite", &MeshReport::non_finite},
-    {"out_of_range", "out-of-range", &MeshReport::out_of_range},
-    {"unreferenced", "unreferenced", &MeshReport::unreferenced},
-    {"flipped", "flipped", &MeshReport::flipped},
-};
-
 void print_header() {
   fmt::print("{:<24}", "model");
-  for (const Column& column : k_columns)
-    fmt::print(" {:>12}", column.title);
+  for (const MeshReportColumn& column : k_mesh_report_columns)
+    fmt::print(" {:>14}", column.name);
   fmt::print("  stored\n");
 }
 
 void print_row(const std::string& name, const MeshReport& report) {
   fmt::print("{:<24}", name);
-  for (const Column& column : k_columns)
-    fmt::print(" {:>12}", report.*column.count);
+  for (const MeshReportColumn& column : k_mesh_report_columns)
+    fmt::print(" {:>14}", report.*column.count);
   fmt::print("  {}\n", report.has_normals && report.has_uvs ? "normals, uvs"
                        : report.has_normals                 ? "normals"
                        : report.has_uvs                     ? "uvs"
@@ -51,7 +31,7 @@ void print_row(const std::string& name, const MeshReport& report) {
 nlohmann::json to_json(const std::string& name, const MeshReport& report) {
   nlohmann::json object{
       {"model", name}, {"has_normals", report.has_normals}, {"has_uvs", report.has_uvs}};
-  for (const Column& column : k_columns)
+  for (const MeshReportColumn& column : k_mesh_report_columns)
     object[column.name] = report.*column.count;
   return object;
 }

@@ -25,6 +25,14 @@ FilmFacts facts_column(const Statement& row, int column) {
   }
 }
 
+MendedDamage damage_column(const Statement& row, int column) {
+  try {
+    return nlohmann::json::parse(row.text(column)).get<MendedDamage>();
+  } catch (const nlohmann::json::exception& error) {
+    throw DamagedDatabase(fmt::format("the database is damaged: damage: {}", error.what()));
+  }
+}
+
 std::vector<std::string> parse_overrides(const std::string& text) {
   try {
     return nlohmann::json::parse(text).get<std::vector<std::string>>();
@@ -77,18 +85,19 @@ void Database::put_content(const std::filesystem::path& file, const FileStamp& s
       .run();
 }
 
-std::optional<Hash128> Database::find_geometry(Hash128 content, int reader) {
-  Statement row =
-      connection_.prepare("SELECT geometry FROM geometry WHERE content = ?1 AND reader = ?2");
+std::optional<KnownModel> Database::find_model(Hash128 content, int reader) {
+  Statement row = connection_.prepare(
+      "SELECT geometry, damage FROM geometry WHERE content = ?1 AND reader = ?2");
   if (!row.bind(1, content.hex()).bind(2, std::int64_t{reader}).step()) return std::nullopt;
-  return hash_column(row, 0);
+  return KnownModel{hash_column(row, 0), damage_column(row, 1)};
 }
 
-void Database::put_geometry(Hash128 content, int reader, Hash128 geometry) {
-  connection_.prepare("INSERT OR REPLACE INTO geometry VALUES (?1, ?2, ?3)")
+void Database::put_model(Hash128 content, int reader, const KnownModel& model) {
+  connection_.prepare("INSERT OR REPLACE INTO geometry VALUES (?1, ?2, ?3, ?4)")
       .bind(1, content.hex())
       .bind(2, std::int64_t{reader})
-      .bind(3, geometry.hex())
+      .bind(3, model.geometry.hex())
+      .bind(4, nlohmann::json(model.damage).dump())
       .run();
 }
 

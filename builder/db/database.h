@@ -5,6 +5,7 @@
 #include "builder/db/sqlite.h"
 #include "tracer/base/hash.h"
 #include "tracer/render/render.h"
+#include "tracer/scene/mesh.h"
 
 #include <array>
 #include <cstdint>
@@ -55,6 +56,14 @@ struct PlacedFile {
   std::optional<FileStamp> stamp;  ///< absent: not seen whole since it was recorded
 };
 
+/// What is known of a model file's content.
+struct KnownModel {
+  Hash128 geometry;
+  MendedDamage damage;
+
+  bool operator==(const KnownModel&) const = default;
+};
+
 struct DatasetRow {
   std::string id;  ///< 32 hexadecimal digits, fixed when the dataset is first built
   std::string name;
@@ -92,9 +101,9 @@ class Database {
   /// Content hashes of input files by stamp.
   std::optional<Hash128> find_content(const std::filesystem::path& file, const FileStamp& stamp);
   void put_content(const std::filesystem::path& file, const FileStamp& stamp, Hash128 content);
-  /// Geometry hashes of model files by content. `reader` is the version of what read them.
-  std::optional<Hash128> find_geometry(Hash128 content, int reader);
-  void put_geometry(Hash128 content, int reader, Hash128 geometry);
+  /// Model files by content. `reader` is the version of what read them.
+  std::optional<KnownModel> find_model(Hash128 content, int reader);
+  void put_model(Hash128 content, int reader, const KnownModel& model);
 
   bool has_products();
   std::optional<Product> find_product(Hash128 key);

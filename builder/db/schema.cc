@@ -18,6 +18,7 @@ CREATE TABLE input_file (
 CREATE TABLE geometry (
   content TEXT NOT NULL, reader INTEGER NOT NULL,
   geometry TEXT NOT NULL,
+  damage TEXT NOT NULL,       -- mended, as JSON array of [name, count]
   PRIMARY KEY (content, reader)
 ) WITHOUT ROWID;
 CREATE TABLE product (
@@ -66,14 +67,20 @@ CREATE TABLE build (
   seconds REAL NOT NULL
 );
 CREATE INDEX build_dataset ON build (dataset);
-PRAGMA user_version = 2;
+PRAGMA user_version = 3;
 )sql";
-static_assert(k_schema_version == 2, "the last line of k_tables states the version too");
+static_assert(k_schema_version == 3, "the last line of k_tables states the version too");
 
 /// From version 1 to 2.
 constexpr const char* k_add_facts = R"sql(
 ALTER TABLE product ADD COLUMN facts TEXT NOT NULL DEFAULT '';
-PRAGMA user_version = 2;
+)sql";
+
+/// From version 2 to 3.
+constexpr const char* k_add_damage = R"sql(
+DELETE FROM geometry;
+ALTER TABLE geometry ADD COLUMN damage TEXT NOT NULL DEFAULT '[]';
+PRAGMA user_version = 3;
 )sql";
 
 std::int64_t user_version(Connection& connection) {
@@ -98,8 +105,9 @@ void prepare_schema(Connection& connection, const std::string& name) {
   if (version > k_schema_version)
     fail(ErrorKind::io, "{}: wanted a database of version {}, found {}: made by a newer dsbuild",
          name, k_schema_version, version);
-  if (version == 1) {
-    connection.execute(k_add_facts);
+  if (version > 0) {
+    if (version == 1) connection.execute(k_add_facts);
+    connection.execute(k_add_damage);
     transaction.commit();
     return;
   }

@@ -8,9 +8,10 @@ namespace ds {
 /// Version of the tables, in the file's `user_version`.
 ///   1: first
 ///   2: product.facts; '' in rows of version 1, whose films' facts were not kept
+///   3: geometry.damage; rows of older versions are dropped, and their models read once more
 /// An older file is converted when it is opened; a newer one is refused, since writing to it could
 /// lose what this program does not know.
-inline constexpr int k_schema_version = 2;
+inline constexpr int k_schema_version = 3;
 
 /// Makes the tables where the file is new. Throws Error(io) for a file of a newer version,
 /// DamagedDatabase for one that is some other program's.

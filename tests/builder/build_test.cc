@@ -16,6 +16,7 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::SizeIs;
 
 class BuildTest : public TinyDataset {};
@@ -251,6 +252,37 @@ TEST_F(BuildTest, ABadModelIsOneFailureForAllItsImages) {
   ASSERT_THAT(rest.failures, SizeIs(1));
   EXPECT_THAT(rest.failures[0].first, HasSubstr("4 images"));
   EXPECT_THAT(rest.failures[0].second, HasSubstr("bad.ply"));
+}
+
+TEST_F(BuildTest, AMendedModelStandsInTheManifest) {
+  build();
+  EXPECT_THAT(plan().mended, IsEmpty());
+  EXPECT_THAT(contents().at("manifest/dataset.json"), Not(HasSubstr("mended_models")));
+  write_file_atomic(recipe_folder() / "models/torn.off",
+                    std::string_view("OFF 4 3 0\n0 0 0\n1 0 0\n0 1 0\n3e38 0 0\n"
+                                     "3 0 1 2\n3 0 1 3\n3 0 1 9\n"));
+  const MendedDamage damage{{"out_of_range", 1}, {"non_finite", 1}};
+  EXPECT_TRUE(build().ok()) << "it is a warning";
+  const auto files = contents();
+  // By a database that knows the file, and by one that does not.
+  for (int i = 0; i < 2; ++i) {
+    const Plan known = plan();
+    ASSERT_THAT(known.mended, SizeIs(1)) << "once, not once an image";
+    EXPECT_EQ(known.mended.at("torn.off").damage, damage);
+    EXPECT_EQ(known.mended.at("torn.off").file.filename(), "torn.off");
+    const DatasetRecord record = read_dataset_manifest(output());
+    ASSERT_THAT(record.mended_models, SizeIs(1));
+    EXPECT_EQ(record.mended_models[0].first, "torn.off");
+    EXPECT_EQ(record.mended_models[0].second,
+              (MendedDamage{{"non_finite", 1}, {"out_of_range", 1}}));
+    for (const char* name : {"dsbuild.sqlite", "dsbuild.sqlite-wal", "dsbuild.sqlite-shm"})
+      fs::remove(output() / ".dsbuild" / name);
+    build();
+    EXPECT_EQ(contents(), files);
+  }
+  fs::remove(recipe_folder() / "models/torn.off");
+  build();
+  EXPECT_THAT(contents().at("manifest/dataset.json"), Not(HasSubstr("mended_models")));
 }
 
 TEST_F(BuildTest, WhatTheRecipeNoLongerNamesIsRemovedAndOthersFilesAreNot) {

@@ -45,11 +45,16 @@ TEST(Database, KnowsAFileByEveryPartOfItsStamp) {
   EXPECT_FALSE(database.find_content("/a/file", {10, 20, 31}));
 }
 
-TEST(Database, KeepsGeometryByTheVersionOfItsReader) {
+TEST(Database, KeepsModelsByTheVersionOfTheirReader) {
   Database database({});
-  database.put_geometry(k_a, 1, k_b);
-  EXPECT_EQ(database.find_geometry(k_a, 1), k_b);
-  EXPECT_FALSE(database.find_geometry(k_a, 2));
+  const KnownModel whole{k_b, {}}, mended{k_b, {{"out_of_range", 2}, {"non_finite", 1}}};
+  database.put_model(k_a, 1, whole);
+  EXPECT_EQ(database.find_model(k_a, 1), whole);
+  EXPECT_FALSE(database.find_model(k_a, 2));
+  database.put_model(k_a, 1, mended);
+  EXPECT_EQ(database.find_model(k_a, 1), mended);
+  database.connection().execute("UPDATE geometry SET damage = '{}x'");
+  EXPECT_THROW(database.find_model(k_a, 1), DamagedDatabase);
 }
 
 TEST(Database, KeepsDatasetsApart) {
@@ -114,7 +119,9 @@ TEST(Database, ReadsAFileOfVersionOne) {
   { Database(file).put_product(product, {}); }
   {
     Connection connection(file);
-    connection.execute("ALTER TABLE product DROP COLUMN facts; PRAGMA user_version = 1");
+    connection.execute(
+        "ALTER TABLE product DROP COLUMN facts; "
+        "ALTER TABLE geometry DROP COLUMN damage; PRAGMA user_version = 1");
   }
   for (int opened = 0; opened < 2; ++opened) {
     Database database(file);
@@ -124,6 +131,23 @@ TEST(Database, ReadsAFileOfVersionOne) {
     EXPECT_EQ(found->relative_error, 0.5);
     EXPECT_EQ(found->facts, FilmFacts{}) << "version 1 kept none";
   }
+}
+
+TEST(Database, ForgetsModelsOfVersionTwoWhoseDamageIsNotKnown) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "db.sqlite";
+  const Product product{k_a, "film", k_b, 17, std::string(64, 'f'), k_a, 0.25, 3, 0.5, {}};
+  {
+    Database database(file);
+    database.put_product(product, {});
+    database.put_model(k_a, 1, {k_b, {}});
+  }
+  Connection(file).execute("ALTER TABLE geometry DROP COLUMN damage; PRAGMA user_version = 2");
+  Database database(file);
+  EXPECT_FALSE(database.find_model(k_a, 1));
+  EXPECT_TRUE(database.find_product(k_a));
+  database.put_model(k_a, 1, {k_b, {{"non_finite", 1}}});
+  EXPECT_EQ(database.find_model(k_a, 1)->damage, (MendedDamage{{"non_finite", 1}}));
 }
 
 TEST(Database, TakesFactsThatAreNoneForDamage) {

@@ -222,6 +222,27 @@ class BuildTest(TinyCase):
         self.assertRegex(shown.decode(), r"\r\x1b\[K\[\d/8\] .*Msamples/s  ETA \d+:\d\d")
         self.assertFalse(re.search(r"[^\r]\n", shown.decode()), "one line only")
 
+    def test_a_mended_model_is_told_once(self):
+        self.assertNotIn("warning", self.run_it("build", self.recipe, "-o", self.out).err)
+        dataset = self.out / "manifest/dataset.json"
+        self.assertNotIn("mended_models", json.loads(dataset.read_text()))
+        (self.tiny / "models/torn.off").write_text(
+            "OFF 5 6 0\n0 0 0\n4 0 0\n0 4 0\n0 0 4\n3e38 0 0\n"
+            "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 0 1 4\n3 0 1 9\n")
+        for built in (IMAGES // 2, 0):  # whether it is read now or was read before
+            run = self.run_it("build", self.recipe, "-o", self.out, "--json")
+            self.assertEqual(run.code, 0, run)
+            self.assert_counts(run.json, built=built)
+            warnings = [line for line in run.err.splitlines() if "warning" in line]
+            self.assertEqual(len(warnings), 1, run)
+            self.assertRegex(warnings[0], r"^dsbuild: warning: .*/models/torn\.off: mended: faces with an index out of "
+                                          r"range removed: 1, vertices not finite or beyond 1e18 removed with their "
+                                          r"faces: 1$")
+            self.assertEqual(json.loads(dataset.read_text())["mended_models"],
+                             {"torn.off": {"non_finite": 1, "out_of_range": 1}})
+        models = {model["model"]: model for model in self.run_it("models", self.recipe, "--json").json["models"]}
+        self.assertEqual((models["torn.off"]["non_finite"], models["torn.off"]["out_of_range"]), (1, 1))
+
     def test_models_are_reported(self):
         run = self.run_it("models", self.recipe, "--json")
         self.assertEqual(run.code, 0, run)

@@ -111,6 +111,21 @@ TEST_F(ManifestTest, ReadsBackWhatWasWritten) {
   EXPECT_EQ(to_json(read_dataset_manifest(folder_)), to_json(dataset_));
 }
 
+TEST_F(ManifestTest, NamesMendedModelsAndOnlyThose) {
+  EXPECT_THAT(to_json(dataset_), testing::Not(HasSubstr("mended_models")));
+  EXPECT_TRUE(dataset_from_json(to_json(dataset_), "d").mended_models.empty());
+  dataset_.mended_models = {{"mug.ply", {{"non_finite", 1}, {"out_of_range", 12}}}};
+  const std::string text = to_json(dataset_);
+  EXPECT_EQ(dataset_from_json(text, "d").mended_models, dataset_.mended_models);
+  auto wrong = nlohmann::json::parse(text);
+  wrong["mended_models"]["mug.ply"]["non_finite"] = -1;
+  EXPECT_THROW(dataset_from_json(wrong.dump(), "d"), Error);
+  wrong["mended_models"]["mug.ply"] = 3;
+  EXPECT_THROW(dataset_from_json(wrong.dump(), "d"), Error);
+  wrong["mended_models"] = nlohmann::json::array();
+  EXPECT_THROW(dataset_from_json(wrong.dump(), "d"), Error);
+}
+
 TEST_F(ManifestTest, DoesNotDependOnTheOrderOfTheImages) {
   write_manifest(folder_, dataset_, images_);
   const std::string lines = read("manifest/images.jsonl"), sums = read("manifest/checksums.xxh128");

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace ds {
@@ -53,26 +54,40 @@ struct MeshReport {
   bool has_uvs = false;
 };
 
-/// The counts of MeshReport with their names, in the order a table should have them.
+/// The counts of MeshReport with their names, in the order a table should have them. `damage`: what
+/// was done about what no whole file holds; null for counts that tell of a mesh and change no
+/// picture, as triangles without area do not.
 struct MeshReportColumn {
   const char* name;
   std::uint64_t MeshReport::*count;
+  const char* damage = nullptr;
 };
 inline constexpr std::array k_mesh_report_columns{
     MeshReportColumn{"vertices", &MeshReport::vertices},
     MeshReportColumn{"faces", &MeshReport::faces},
     MeshReportColumn{"n_gons", &MeshReport::n_gons},
-    MeshReportColumn{"short_faces", &MeshReport::short_faces},
+    MeshReportColumn{"short_faces", &MeshReport::short_faces,
+                     "faces of fewer than three corners removed"},
     MeshReportColumn{"triangles", &MeshReport::triangles},
-    MeshReportColumn{"out_of_range", &MeshReport::out_of_range},
-    MeshReportColumn{"non_finite", &MeshReport::non_finite},
-    MeshReportColumn{"bad_attributes", &MeshReport::bad_attributes},
+    MeshReportColumn{"out_of_range", &MeshReport::out_of_range,
+                     "faces with an index out of range removed"},
+    MeshReportColumn{"non_finite", &MeshReport::non_finite,
+                     "vertices not finite or beyond 1e18 removed with their faces"},
+    MeshReportColumn{"bad_attributes", &MeshReport::bad_attributes,
+                     "normals or uvs not finite set to 0"},
     MeshReportColumn{"zero_area", &MeshReport::zero_area},
     MeshReportColumn{"duplicate_faces", &MeshReport::duplicate_faces},
     MeshReportColumn{"unreferenced", &MeshReport::unreferenced},
     MeshReportColumn{"flipped", &MeshReport::flipped},
     MeshReportColumn{"triangles_kept", &MeshReport::triangles_kept},
 };
+
+/// Damage that reading mended, by name and count, in the order of the columns; empty for a whole
+/// file.
+using MendedDamage = std::vector<std::pair<std::string, std::uint64_t>>;
+MendedDamage mended_damage(const MeshReport& report);
+/// "faces with an index out of range removed: 2, ...".
+std::string to_text(const MendedDamage& damage);
 
 /// A mesh as its file describes it, before normalisation.
 struct Model {

@@ -140,6 +140,26 @@ void drop_unreferenced(Mesh& mesh, MeshReport& report) {
 
 }  // namespace
 
+MendedDamage mended_damage(const MeshReport& report) {
+  MendedDamage damage;
+  for (const MeshReportColumn& column : k_mesh_report_columns)
+    if (column.damage != nullptr && report.*column.count > 0)
+      damage.emplace_back(column.name, report.*column.count);
+  return damage;
+}
+
+std::string to_text(const MendedDamage& damage) {
+  std::string text;
+  for (const auto& [name, count] : damage) {
+    const auto column = std::find_if(k_mesh_report_columns.begin(), k_mesh_report_columns.end(),
+                                     [&](const MeshReportColumn& c) { return name == c.name; });
+    const bool known = column != k_mesh_report_columns.end() && column->damage != nullptr;
+    text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", known ? column->damage : name.c_str(),
+                        count);
+  }
+  return text;
+}
+
 Model mend(Polygons polygons, const std::string& name) {
   Model model;
   MeshReport& report = model.report;

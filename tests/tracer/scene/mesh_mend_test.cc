@@ -123,6 +123,19 @@ TEST(Mend, AModelWithoutTrianglesIsAnError) {
                          "finite, 1 triangles without area"));
 }
 
+TEST(MeshReport, NamesTheDamageThatWasMended) {
+  EXPECT_EQ(mended_damage(parse_model(tetra_and({"4 4 0"}, {"4 0 1 4 2"}), "m").report),
+            MendedDamage{})
+      << "an n-gon and what is removed without loss are no damage";
+  const Model damaged =
+      parse_model(tetra_and({"3e38 0 0", "0 nan 0"}, {"3 0 1 4", "3 0 1 9", "2 0 1"}), "m");
+  const MendedDamage damage = mended_damage(damaged.report);
+  EXPECT_EQ(damage, (MendedDamage{{"short_faces", 1}, {"out_of_range", 1}, {"non_finite", 2}}));
+  EXPECT_EQ(to_text(damage),
+            "faces of fewer than three corners removed: 1, faces with an index out of range "
+            "removed: 1, vertices not finite or beyond 1e18 removed with their faces: 2");
+}
+
 TEST(MeshReport, ColumnsNameEveryCount) {
   // has_normals and has_uvs are the only members that are not counts; the struct is padded to 8
   // bytes.
