@@ -60,8 +60,7 @@ void print_result(const BuildResult& result, const Dataset& dataset) {
   if (result.not_reached > 0) text += fmt::format(", {} not reached", result.not_reached);
   text += fmt::format(", in {:.1f} s", result.seconds);
   if (result.traced_samples > 0)
-    text += fmt::format("; {:.1f} Msamples traced on {}",
-                        static_cast<double>(result.traced_samples) * 1e-6, result.device);
+    text += fmt::format("; {} traced on {}", format_samples(result.traced_samples), result.device);
   fmt::print("{}\n", text);
   print_capped(result, dataset.recipe);
   fmt::print("pictures: {}\nmanifest: {}\n", (dataset.folder / "images").string(),
@@ -117,7 +116,7 @@ int run_build(const Arguments& arguments) {
   };
   BuildResult result;
   {
-    Progress progress;
+    Progress progress(arguments.keep_going);
     result = execute(dataset, plan, inputs, {arguments.keep_going, arguments.force}, disk, factory,
                      progress, stop);
   }

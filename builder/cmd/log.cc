@@ -25,11 +25,10 @@ int run_log(const Arguments& arguments) {
                      {"traced_samples", build.traced_samples},
                      {"seconds", build.seconds}});
     if (!arguments.json)
-      fmt::print(
-          "{} UTC  {:<8} {:>6} built {:>6} reused {:>4} failed {:>10.1f} Msamples {:>9}  {} {}\n",
-          build.started_at, build.outcome, build.built, build.reused, build.failed,
-          static_cast<double>(build.traced_samples) * 1e-6, format_duration(build.seconds),
-          build.host, build.device);
+      fmt::print("{} UTC  {:<8} {:>6} built {:>6} reused {:>4} failed {:>17} {:>9}  {} {}\n",
+                 build.started_at, build.outcome, build.built, build.reused, build.failed,
+                 format_samples(build.traced_samples), format_duration(build.seconds), build.host,
+                 build.device);
   }
   if (arguments.json) print_json({{"builds", array}});
   return 0;

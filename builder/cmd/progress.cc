@@ -13,6 +13,14 @@ constexpr const char* k_erase_line = "\r\x1b[K";
 
 }  // namespace
 
+std::string format_samples(std::uint64_t samples) {
+  const auto count = static_cast<double>(samples);
+  // What would round to 1000.0 k is a million.
+  if (count >= 999'950) return fmt::format("{:.1f} Msamples", count * 1e-6);
+  if (count >= 1000) return fmt::format("{:.1f} ksamples", count * 1e-3);
+  return fmt::format("{} samples", samples);
+}
+
 std::string format_duration(double seconds) {
   const auto whole = static_cast<std::uint64_t>(seconds + 0.5);
   const std::uint64_t hours = whole / 3600, minutes = whole / 60 % 60;
@@ -20,7 +28,8 @@ std::string format_duration(double seconds) {
   return fmt::format("{}:{:02}", minutes, whole % 60);
 }
 
-Progress::Progress() : moves_(::isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(bool tell_failures)
+    : tell_failures_(tell_failures), moves_(::isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
   clear();
@@ -79,6 +88,7 @@ void Progress::image_failed(const PlannedImage& image, const std::string& why) {
   ++images_done_;
   samples_done_ += image.trace_film ? image.samples() : 0;
   clear();
+  if (!tell_failures_) return;
   fmt::print(stderr, "dsbuild: error: {}: {}\n", image.spec.id, why);
 }
 

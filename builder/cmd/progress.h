@@ -13,7 +13,8 @@ namespace ds {
 /// elsewhere.
 class Progress : public BuildObserver {
  public:
-  Progress();
+  /// `tell_failures`: as they come; else they are left to the end, which is then near.
+  explicit Progress(bool tell_failures);
   ~Progress() override;
 
   void started(std::uint64_t images, std::uint64_t samples) override;
@@ -28,6 +29,7 @@ class Progress : public BuildObserver {
   void clear();
 
   using Clock = std::chrono::steady_clock;
+  bool tell_failures_;
   bool moves_;
   std::uint64_t images_ = 0, images_done_ = 0;
   std::uint64_t samples_ = 0;         ///< planned
@@ -36,6 +38,8 @@ class Progress : public BuildObserver {
   Clock::time_point start_ = Clock::now();
 };
 
+/// "512 samples", "8.2 ksamples", "1835.0 Msamples".
+std::string format_samples(std::uint64_t samples);
 /// "0:07", "12:34", "3:25:45".
 std::string format_duration(double seconds);
 

@@ -243,6 +243,19 @@ class BuildTest(TinyCase):
         models = {model["model"]: model for model in self.run_it("models", self.recipe, "--json").json["models"]}
         self.assertEqual((models["torn.off"]["non_finite"], models["torn.off"]["out_of_range"]), (1, 1))
 
+    def test_a_failing_image_is_told_once(self):
+        run = self.run_it("build", self.recipe, "-o", self.out, "--device", "no such device")
+        self.assertEqual(run.code, 1, run)
+        self.assertEqual(run.err.count("dsbuild: error:"), 1, run)
+        self.assertIn("no such device", run.err)
+        going_on = self.run_it("build", self.recipe, "-o", self.out, "--device", "no such device", "-k")
+        self.assertRegex(going_on.err, rf"dsbuild: error: {IMAGES} images, \S+ \.\.\.: .*no such device")
+
+    def test_small_builds_count_samples_in_thousands(self):
+        run = self.run_it("build", self.recipe, "-o", self.out)
+        self.assertRegex(run.out, r"; 8\.2 ksamples traced on ")
+        self.assertRegex(self.run_it("log", self.out).out, r" 8\.2 ksamples ")
+
     def test_models_are_reported(self):
         run = self.run_it("models", self.recipe, "--json")
         self.assertEqual(run.code, 0, run)
