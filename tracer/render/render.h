@@ -179,7 +179,7 @@ std::string canonical_kept_engine(const Scene& scene, const Camera& camera,
 /// Canonical text of the camera part.
 std::string canonical_camera(const Camera& camera);
 /// Bumped when host code that can move a pixel changes (mesh normalisation, packing, sky model,
-/// sampling tables).
-inline constexpr int k_host_render_version = 2;
+/// sampling tables, the guide to caustics).
+inline constexpr int k_host_render_version = 3;
 
 }  // namespace ds

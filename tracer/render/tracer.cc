@@ -46,6 +46,14 @@ std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
 }
 
+/// Two for each pixel, so that a small picture is not longer under way for them than for its own
+/// samples. Not by spp: more samples go on from a kept film.
+std::size_t photons_for(const EngineSettings& engine) {
+  const std::size_t pixels =
+      static_cast<std::size_t>(engine.width) * static_cast<std::size_t>(engine.height);
+  return std::clamp(2 * pixels, std::size_t{1} << 14, std::size_t{1} << 17);
+}
+
 /// What the kernel reads of a launch (kernels/types.h).
 std::vector<std::uint32_t> launch_words(const FilmSums& film, std::span<const TileStep> steps,
                                         std::size_t share) {
@@ -98,12 +106,13 @@ struct Tracer::State {
     // The lens changes the program, not the numbers in the tables.
     Features numbering = wanted;
     numbering.lens = false;
-    if (!packed_for || *packed_for != numbering) {
+    const std::size_t photons = wanted.guide ? photons_for(engine) : 0;
+    const bool lacks_photons = guide_photons != photons && photons > 0 && !packed;
+    if (!packed_for || *packed_for != numbering || lacks_photons)
       take(pack_scene(*scene, wanted, quality(), options.bvh_width), numbering);
-    }
-    if (!guided) {
-      guide = device.upload(wanted.guide ? make_guide() : std::vector<std::uint32_t>(1));
-      guided = true;
+    if (guide_photons != photons) {
+      guide = device.upload(photons > 0 ? make_guide(photons) : std::vector<std::uint32_t>(1));
+      guide_photons = photons;
       packed.reset();
     }
     if (!program_for || *program_for != wanted || program_math != engine.math) {
@@ -117,11 +126,11 @@ struct Tracer::State {
   void take(PackedScene scene_words, const Features& numbering) {
     device_scene = upload(device, scene_words);
     packed_for = numbering;
-    guided = false;
+    guide_photons.reset();
     if (numbering.guide) packed = std::move(scene_words);
   }
 
-  std::vector<std::uint32_t> make_guide() {
+  std::vector<std::uint32_t> make_guide(std::size_t photon_count) {
     if (!has_rays_program) {
       rays_kernel =
           device.kernel(device.build(rays_program_text(), k_strict_options, options.cache_folder),
@@ -143,9 +152,8 @@ struct Tracer::State {
       device.read(out, std::as_writable_bytes(std::span(answers)));
       return answers;
     };
-    constexpr std::size_t most = std::size_t{1} << 17;
     const std::vector<Photon> photons =
-        trace_photons(*scene, *packed, *packed_for, most, trace_rays);
+        trace_photons(*scene, *packed, *packed_for, photon_count, trace_rays);
     Vec3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
     for (const Object& object : scene->objects) {
       if (object.id != k_model_object_id) continue;
@@ -198,7 +206,7 @@ struct Tracer::State {
   MathMode program_math = MathMode::strict;
   std::optional<PackedScene> packed;
   Buffer guide;
-  bool guided = false;  ///< `guide` is the scene's
+  std::optional<std::size_t> guide_photons;  ///< that `guide` is made of; none: of another scene
   Kernel rays_kernel;
   bool has_rays_program = false;
   Program geometry_program;
