@@ -12,15 +12,13 @@
 
 #include <bit>
 #include <cmath>
-#include <numbers>
+#include <numeric>
 #include <random>
 
 namespace ds {
 namespace {
 
 using pictures::Picture;
-
-constexpr double k_pi = std::numbers::pi;
 
 std::vector<float> as_floats(const std::vector<std::uint32_t>& words) {
   std::vector<float> values;
@@ -72,39 +70,27 @@ TEST(Guide, LooksToWherePhotonsCameFrom) {
 /// By cells of equal solid angle; also from inside a sphere, where the lobe is half of all
 /// directions.
 TEST(Guide, DirectionsFollowTheirDensity) {
-  constexpr int k_rows = 20, k_columns = 40, k_samples = 200000, k_steps = 30;
+  constexpr SphereCells cells{20, 40};
+  constexpr int k_samples = 200000;
   for (const float away : {1.0f, 0.03f}) {
     const std::vector<float> table = as_floats(guide_table(from_two_places(away), {0, 0, 0}, 1));
     const kernels::Guide guide = kernels::guide_at(table.data(), true, kernels::vec(0, 0, 0));
     ASSERT_TRUE(guide.there);
-    std::vector<double> counts(k_rows * k_columns), expected(counts.size());
+    std::vector<double> counts(cells.count());
     std::mt19937 random(3);
     std::uniform_real_distribution<float> some(0, 1);
     for (int i = 0; i < k_samples; ++i) {
       const kernels::real3 wi =
           kernels::guide_sample(&guide, some(random), {some(random), some(random)});
-      const double turn = std::atan2(double{wi.y}, double{wi.x}) / (2 * k_pi) + 0.5;
-      const int row = std::min(static_cast<int>((double{wi.z} + 1) / 2 * k_rows), k_rows - 1);
-      const int column = std::min(static_cast<int>(turn * k_columns), k_columns - 1);
-      counts[static_cast<std::size_t>(row * k_columns + column)] += 1;
+      counts[cells.cell(wi.x, wi.y, wi.z)] += 1;
     }
-    double total = 0;
-    for (int cell = 0; cell < k_rows * k_columns; ++cell) {
-      double sum = 0;
-      for (int i = 0; i < k_steps * k_steps; ++i) {
-        const double z = -1 + 2 * (cell / k_columns + (i / k_steps + 0.5) / k_steps) / k_rows;
-        const double azimuth =
-            -k_pi + 2 * k_pi * (cell % k_columns + (i % k_steps + 0.5) / k_steps) / k_columns;
-        const double s = std::sqrt(1 - z * z);
-        sum += double{kernels::guide_pdf(
-            &guide,
-            kernels::vec(static_cast<float>(s * std::cos(azimuth)),
-                         static_cast<float>(s * std::sin(azimuth)), static_cast<float>(z)))};
-      }
-      expected[static_cast<std::size_t>(cell)] =
-          sum * 4 * k_pi / (k_rows * k_columns) / (k_steps * k_steps);
-      total += expected[static_cast<std::size_t>(cell)];
-    }
+    std::vector<double> expected = cells.integrals(30, [&](double z, double azimuth) {
+      const double s = std::sqrt(1 - z * z);
+      return kernels::guide_pdf(
+          &guide, kernels::vec(static_cast<float>(s * std::cos(azimuth)),
+                               static_cast<float>(s * std::sin(azimuth)), static_cast<float>(z)));
+    });
+    const double total = std::accumulate(expected.begin(), expected.end(), 0.0);
     EXPECT_NEAR(total, 1, 2e-3) << away;
     for (double& e : expected)
       e *= k_samples / total;
@@ -133,6 +119,10 @@ TEST(Guide, IsForShinyModelsAmongDullThingsOnly) {
   EXPECT_TRUE(guided(ball_in_the_sun(k_model_object_id).scene));
   EXPECT_FALSE(guided(ball_in_the_sun(7).scene));
   EXPECT_FALSE(guided(ball_in_the_sun(k_model_object_id, "matte").scene));
+  // A mirror has one lobe, and the guide chooses all the same.
+  const Scene mirror = ball_in_the_sun(k_model_object_id, "mirror").scene;
+  EXPECT_TRUE(guided(mirror));
+  EXPECT_FALSE(features_of(mirror, Camera{}).lobe_choice);
   Scene dark = ball_in_the_sun(k_model_object_id).scene;
   dark.lights = {pictures::constant_light({1, 1, 1})};
   EXPECT_FALSE(guided(dark));

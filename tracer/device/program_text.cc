@@ -250,7 +250,7 @@ std::string path_program_text(const Features& f) {
   if (f.mix) head += fmt::format("#define DS_MIX_NUMBER {}\n", f.materials.size());
   if (f.lens) head += "#define DS_LENS\n";
   if (f.camera_invisible) head += "#define DS_CAMERA_INVISIBLE\n";
-  if (f.lobe_choice || f.guide) head += "#define DS_LOBE_CHOICE\n";
+  if (f.lobe_choice) head += "#define DS_LOBE_CHOICE\n";
   if (f.guide) {
     std::string dull;
     for (const std::string& name : f.materials)

@@ -49,33 +49,22 @@ DS_FN real3 hit_word3(const LaneHits* hits, int i) {
   return vec(hit_word(hits, i), hit_word(hits, i + 1), hit_word(hits, i + 2));
 }
 
+DS_FN Corners corners_of(const LaneHits* hits) {
+  Corners c;
+  for (int i = 0; i < 3; ++i) {
+    c.position[i] = hit_word3(hits, k_triangle_positions + 3 * i);
+    c.normal[i] = hit_word3(hits, k_triangle_normals + 3 * i);
+  }
+  return c;
+}
+
 DS_FN Surface surface_of(const LaneHits* hits, real3 origin, real3 direction) {
-  const real3 wo = negate(direction);
-  const real3 p0 = hit_word3(hits, k_triangle_positions);
-  const real3 p1 = hit_word3(hits, k_triangle_positions + 3);
-  const real3 p2 = hit_word3(hits, k_triangle_positions + 6);
-  const real2 weights = hit_weights(origin, direction, p0, p1, p2);
+  const Corners c = corners_of(hits);
+  const real2 weights = hit_weights(origin, direction, c.position[0], c.position[1], c.position[2]);
   const real b1 = weights.x;
   const real b2 = weights.y;
   const real b0 = 1.0f - b1 - b2;
-  Surface s;
-  const real3 e1 = sub(p1, p0);
-  const real3 e2 = sub(p2, p0);
-  // From the first corner along the edges: far from the origin a mean of the corners would be
-  // rounded several times in units of the coordinates, this is once.
-  s.position = add(p0, add_scaled(scale(e1, b1), e2, b2));
-  s.error = splat(position_error(p0, e1, e2));
-  const real3 own = triangle_normal(e1, e2);
-  s.outside = dot(own, wo) >= 0.0f;
-  const real side = choose(s.outside, (real)(1.0f), (real)(-1.0f));
-  s.normal = scale(own, side);
-  const real3 n0 = hit_word3(hits, k_triangle_normals);
-  const real3 n1 = hit_word3(hits, k_triangle_normals + 3);
-  const real3 n2 = hit_word3(hits, k_triangle_normals + 6);
-  const real3 interpolated = add_scaled(add_scaled(scale(n0, b0), n1, b1), n2, b2);
-  // Opposite corner normals can cancel; the triangle's own normal stands in.
-  const real3 smooth = choose(dot(interpolated, interpolated) > 1e-6f, unit(interpolated), own);
-  s.shading = facing_normal(scale(smooth, side), wo);
+  Surface s = surface_at(&c, b1, b2, negate(direction));
   s.u = fma(b0, hit_word(hits, k_triangle_uvs),
             fma(b1, hit_word(hits, k_triangle_uvs + 2), b2 * hit_word(hits, k_triangle_uvs + 4)));
   s.v = fma(b0, hit_word(hits, k_triangle_uvs + 1),

@@ -350,7 +350,7 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
   const real2 choices = sample_pair(sampler, pair + (uint)k_pair_choices);
   real2 lobe;
   lobe.x = lobe.y = (real)(0.0f);
-#ifdef DS_LOBE_CHOICE
+#if defined(DS_LOBE_CHOICE) || defined(DS_GUIDED)
   lobe = sample_pair(sampler, pair + (uint)k_pair_lobe);
 #endif
   MaterialPoint m;

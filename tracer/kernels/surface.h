@@ -44,3 +44,32 @@ DS_FN real3 facing_normal(real3 shading, real3 wo) {
   const real lift = greater(0.01f - cosine, (real)(0.0f));
   return choose(lift > 0.0f, unit(add_scaled(shading, wo, lift)), shading);
 }
+
+/// A triangle's corners: world positions, metres, and unit normals.
+typedef struct {
+  real3 position[3], normal[3];
+} Corners;
+
+/// The surface at the weights b1 and b2 of the second and third corner, seen along `wo` (unit, to
+/// the viewer). u and v are left at 0.
+DS_FN Surface surface_at(const Corners* c, real b1, real b2, real3 wo) {
+  const real3 p0 = c->position[0];
+  const real3 e1 = sub(c->position[1], p0);
+  const real3 e2 = sub(c->position[2], p0);
+  Surface s;
+  // From the first corner along the edges: far from the origin a mean of the corners would be
+  // rounded several times in units of the coordinates, this is once.
+  s.position = add(p0, add_scaled(scale(e1, b1), e2, b2));
+  s.error = splat(position_error(p0, e1, e2));
+  const real3 own = triangle_normal(e1, e2);
+  s.outside = dot(own, wo) >= 0.0f;
+  const real side = choose(s.outside, (real)(1.0f), (real)(-1.0f));
+  s.normal = scale(own, side);
+  const real3 interpolated = add_scaled(
+      add_scaled(scale(c->normal[0], 1.0f - b1 - b2), c->normal[1], b1), c->normal[2], b2);
+  // Opposite corner normals can cancel; the triangle's own normal stands in.
+  const real3 smooth = choose(dot(interpolated, interpolated) > 1e-6f, unit(interpolated), own);
+  s.shading = facing_normal(scale(smooth, side), wo);
+  s.u = s.v = (real)(0.0f);
+  return s;
+}

@@ -101,26 +101,12 @@ struct Flight {
 /// The surface under a flight, seen from where it came from.
 kernels::Surface surface_under(const std::vector<float>& triangles, const Flight& flight) {
   const float* row = triangles.data() + std::size_t{flight.triangle} * kernels::k_triangle_words;
-  const auto corner = [&](int offset, int i) {
-    return kernels::load3(row, static_cast<natural>(offset + 3 * i));
-  };
-  const real3 p0 = corner(kernels::k_triangle_positions, 0);
-  const real3 e1 = sub(corner(kernels::k_triangle_positions, 1), p0);
-  const real3 e2 = sub(corner(kernels::k_triangle_positions, 2), p0);
-  kernels::Surface s{};
-  s.position = add(p0, add_scaled(scale(e1, flight.b1), e2, flight.b2));
-  s.error = kernels::splat(kernels::position_error(p0, e1, e2));
-  const real3 own = kernels::triangle_normal(e1, e2);
-  s.outside = dot(own, flight.from) >= 0;
-  const float side = s.outside ? 1.0f : -1.0f;
-  s.normal = scale(own, side);
-  const real3 mean = add_scaled(
-      add_scaled(scale(corner(kernels::k_triangle_normals, 0), 1 - flight.b1 - flight.b2),
-                 corner(kernels::k_triangle_normals, 1), flight.b1),
-      corner(kernels::k_triangle_normals, 2), flight.b2);
-  const real3 smooth = dot(mean, mean) > 1e-6f ? unit(mean) : own;
-  s.shading = kernels::facing_normal(scale(smooth, side), flight.from);
-  return s;
+  kernels::Corners corners;
+  for (natural i = 0; i < 3; ++i) {
+    corners.position[i] = kernels::load3(row, kernels::k_triangle_positions + 3 * i);
+    corners.normal[i] = kernels::load3(row, kernels::k_triangle_normals + 3 * i);
+  }
+  return kernels::surface_at(&corners, flight.b1, flight.b2, flight.from);
 }
 
 RayWords ray_from(real3 origin, real3 direction, float t_max) {
@@ -131,8 +117,7 @@ class PhotonTracer {
  public:
   PhotonTracer(const Scene& scene, const PackedScene& packed, const Features& features,
                const TraceRays& trace)
-      : features_(features),
-        trace_(trace),
+      : trace_(trace),
         substances_(substances(scene)),
         triangles_(floats(packed.triangles)),
         lights_(floats(packed.lights)),
@@ -280,7 +265,6 @@ class PhotonTracer {
     return next;
   }
 
-  const Features& features_;
   const TraceRays& trace_;
   std::vector<Substance> substances_;
   std::vector<float> triangles_, lights_, tables_;

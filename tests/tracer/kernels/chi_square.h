@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <span>
+#include <vector>
 
 namespace ds {
 
@@ -33,6 +36,36 @@ inline double chance_of_counts(std::span<const double> counts, std::span<const d
   if (pooled >= 5) add(pooled_count, pooled);
   return chi_square_chance(value, freedom - 1);
 }
+
+/// Cells of equal solid angle: rows of equal height in z, each of equal azimuths.
+struct SphereCells {
+  int rows, columns;
+
+  std::size_t count() const { return static_cast<std::size_t>(rows * columns); }
+  /// The cell of a unit direction.
+  std::size_t cell(double x, double y, double z) const {
+    const double turn = std::atan2(y, x) / (2 * std::numbers::pi) + 0.5;
+    const int row = std::min(static_cast<int>((z + 1) / 2 * rows), rows - 1);
+    const int column = std::min(static_cast<int>(turn * columns), columns - 1);
+    return static_cast<std::size_t>(row * columns + column);
+  }
+  /// Integral over each cell of `pdf`, a function of a unit direction's z and azimuth, by the
+  /// middles of steps x steps parts.
+  template <typename Pdf>
+  std::vector<double> integrals(int steps, const Pdf& pdf) const {
+    constexpr double pi = std::numbers::pi;
+    std::vector<double> sums(count());
+    for (int cell = 0; cell < rows * columns; ++cell)
+      for (int i = 0; i < steps * steps; ++i) {
+        const double z = -1 + 2 * (cell / columns + (i / steps + 0.5) / steps) / rows;
+        const double azimuth =
+            -pi + 2 * pi * (cell % columns + (i % steps + 0.5) / steps) / columns;
+        sums[static_cast<std::size_t>(cell)] +=
+            double{pdf(z, azimuth)} * 4 * pi / static_cast<double>(count()) / (steps * steps);
+      }
+    return sums;
+  }
+};
 
 /// Chance that one of `tests` may show for all together to be at 0.01 (Sidak 1967).
 inline double sidak(double tests) {

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -77,8 +78,9 @@ real3 direction(double z, double azimuth) {
 /// Samples against the pdf's integral over equal cells of the sphere; the integral over all must
 /// be 1.
 void expect_samples_follow_pdf(const PackedLight& light, int steps, double integral_error) {
-  constexpr int k_rows = 16, k_columns = 32, k_samples = 200000;
-  std::vector<double> counts(k_rows * k_columns), expected(counts.size());
+  constexpr SphereCells cells{16, 32};
+  constexpr int k_samples = 200000;
+  std::vector<double> counts(cells.count());
   std::mt19937 random(3);
   int differ = 0;
   for (int i = 0; i < k_samples; ++i) {
@@ -92,27 +94,15 @@ void expect_samples_follow_pdf(const PackedLight& light, int steps, double integ
     if (std::fabs(pdf / s.pdf - 1) > 1e-3f ||
         std::fabs(radiance.x - s.radiance.x) > 1e-3f * (radiance.x + s.radiance.x))
       ++differ;
-    const double turn = std::atan2(double{s.wi.y}, double{s.wi.x}) / (2 * k_pi) + 0.5;
-    const int row = std::min(static_cast<int>((double{s.wi.z} + 1) / 2 * k_rows), k_rows - 1);
-    const int column = std::min(static_cast<int>(turn * k_columns), k_columns - 1);
-    counts[static_cast<std::size_t>(row * k_columns + column)] += 1;
+    counts[cells.cell(s.wi.x, s.wi.y, s.wi.z)] += 1;
   }
   EXPECT_LT(differ, k_samples / 100);
-  double total = 0;
-  for (int cell = 0; cell < k_rows * k_columns; ++cell) {
-    double sum = 0;
-    for (int i = 0; i < steps * steps; ++i) {
-      const double z = -1 + 2 * (cell / k_columns + (i / steps + 0.5) / steps) / k_rows;
-      const double azimuth =
-          -k_pi + 2 * k_pi * (cell % k_columns + (i % steps + 0.5) / steps) / k_columns;
-      float pdf = 0;
-      infinite_escape(light.tables(), PackedLight::at, direction(z, azimuth), &pdf);
-      sum += double{pdf};
-    }
-    expected[static_cast<std::size_t>(cell)] =
-        sum * 4 * k_pi / (k_rows * k_columns) / (steps * steps);
-    total += expected[static_cast<std::size_t>(cell)];
-  }
+  std::vector<double> expected = cells.integrals(steps, [&](double z, double azimuth) {
+    float pdf = 0;
+    infinite_escape(light.tables(), PackedLight::at, direction(z, azimuth), &pdf);
+    return pdf;
+  });
+  const double total = std::accumulate(expected.begin(), expected.end(), 0.0);
   EXPECT_NEAR(total, 1, integral_error);
   for (double& e : expected)
     e *= k_samples / total;
