@@ -1,11 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """What plan foretells; that it is right is measured by ci/forecast, since a shared machine makes any one time wrong."""
 import os
+import pathlib
+import shutil
+import tempfile
 
 from harness import IMAGES, SAMPLES, TinyCase, main
 
 
 class ForecastTest(TinyCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.programs = pathlib.Path(tempfile.mkdtemp(prefix="dsbuild-programs-"))
+        cls.addClassCleanup(shutil.rmtree, cls.programs, ignore_errors=True)
+
+    def setUp(self):
+        """A calibration of its own for each test, but compiled programs for all together."""
+        super().setUp()
+        (self.folder / "cache/dsbuild").mkdir(parents=True)
+        (self.folder / "cache/dsbuild/programs").symlink_to(self.programs)
+
     def plan(self, *arguments, code=0):
         environment = dict(os.environ, XDG_CACHE_HOME=str(self.folder / "cache"))
         run = self.run_it("plan", self.recipe, "-o", self.out, *arguments, env=environment)
@@ -18,6 +32,21 @@ class ForecastTest(TinyCase):
     def stored(self):
         """Bytes of the objects in the dataset's store."""
         return sum(path.stat().st_size for path in (self.out / ".dsbuild/objects").rglob("*") if path.is_file())
+
+    def calibrating(self):
+        """Folders that calibrations work in."""
+        return [path.name for path in (self.folder / "cache/dsbuild/calibrating").iterdir() if path.is_dir()]
+
+    def test_what_a_killed_calibration_left_is_removed(self):
+        killed = self.start("plan", self.recipe, "-o", self.out, "--time", "--set", "engine.spp=1024",
+                            "--set", "engine.width=256", "--set", "engine.height=256",
+                            env=dict(os.environ, XDG_CACHE_HOME=str(self.folder / "cache")))
+        killed.stderr.readline()  # "calibrating 1 of 8 ..."
+        killed.kill()
+        killed.communicate()
+        self.assertEqual(len(self.calibrating()), 1)
+        self.plan("--time")
+        self.assertEqual(self.calibrating(), [])
 
     def test_time_of_what_is_stale(self):
         told = self.forecast("--time")
@@ -75,7 +104,7 @@ class ForecastTest(TinyCase):
         self.build(*geometry)
         self.assertAlmostEqual(told["bytes"]["value"] / self.stored(), 1, delta=0.25)
         self.assertEqual(self.forecast("--time", *geometry)["seconds"]["value"], 0)
-        self.assertEqual([path.name for path in (self.folder / "cache/dsbuild").glob("calibrating-*")], [])
+        self.assertEqual(self.calibrating(), [])
 
     def test_a_smaller_error_takes_longer_and_a_budget_buys_it_back(self):
         many = ("--set", "engine.error=0.5", "--set", "engine.max_spp=16777216")
