@@ -79,8 +79,8 @@ struct GeometryRung {
 /// What a choice costs beside the subject as the recipe has it.
 struct ChoiceCost {
   Choice choice;
-  Interval time;  ///< SceneTracer::busy of its tracing over the recipe's, median and range over
-                  ///< the seeds
+  Interval time;  ///< SceneTracer::busy of its tracing over the recipe's, traced just before and
+                  ///< after: mean and range of two pairs of pictures
   std::optional<double> noise;  ///< its own noise (Film::relative_error) over the recipe's
   /// Relative RMS difference it makes to a picture without noise, with 95 % bounds; nothing where
   /// the difference is lost in the noise.

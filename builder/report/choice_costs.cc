@@ -12,14 +12,12 @@ namespace {
 
 /// Numbers of the pictures' seeds.
 constexpr int k_first_seed = 2'000'000;
-constexpr int k_seeds = 2;
 /// Standard errors of a 95 % bound.
 constexpr double k_bound = 1.96;
 
-/// One way of tracing the subject, with two seeds.
-struct Variant {
+/// A picture with each of two seeds.
+struct Films {
   Film a, b;
-  std::vector<double> seconds;
 
   std::optional<double> noise() const {
     if (!a.relative_error || !b.relative_error) return std::nullopt;
@@ -27,20 +25,52 @@ struct Variant {
   }
 };
 
+/// One way of tracing the subject.
+struct Variant {
+  Films films;
+  Interval time;  ///< over the subject's
+};
+
+/// Traces the subject, and other ways of it between two pictures of the subject.
 class Choosing {
  public:
-  Choosing(SceneTracer& tracer, int spp, const std::atomic<bool>& stop)
-      : tracer_(tracer), spp_(spp), stop_(stop) {}
+  Choosing(SceneTracer& tracer, const Subject& subject, int spp, const std::atomic<bool>& stop)
+      : tracer_(tracer), subject_(subject), spp_(spp), stop_(stop) {}
 
-  Variant trace(const Subject& subject, bool plain_sums = false) const {
-    Variant variant;
-    picture(subject, 1, 0, plain_sums);  // packs, compiles
-    variant.a = timed(subject, 0, plain_sums, variant.seconds);
-    variant.b = timed(subject, 1, plain_sums, variant.seconds);
+  Films subject() const {
+    make_ready(subject_, true, false);
+    return {timed(subject_, 0, false).film, timed(subject_, 1, false).film};
+  }
+
+  /// `edits_scene`: `other` has a scene of its own. The order subject, other, other, subject takes
+  /// out of the ratio what the machine evenly becomes slower or faster by.
+  Variant beside(const Subject& other, bool edits_scene, bool plain_sums = false) const {
+    make_ready(subject_, edits_scene, false);
+    const double first = timed(subject_, 0, false).seconds;
+    make_ready(other, edits_scene, plain_sums);
+    Timed a = timed(other, 0, plain_sums);
+    Timed b = timed(other, 1, plain_sums);
+    make_ready(subject_, edits_scene, false);
+    const double last = timed(subject_, 1, false).seconds;
+    Variant variant{{std::move(a.film), std::move(b.film)}, {1, 1, 1}};
+    if (first > 0 && last > 0) {
+      const auto [least, most] = std::minmax({a.seconds / first, b.seconds / last});
+      variant.time = {(least + most) / 2, least, most};
+    }
     return variant;
   }
 
  private:
+  struct Timed {
+    Film film;
+    double seconds;
+  };
+
+  /// Packs the scene and compiles the program.
+  void make_ready(const Subject& subject, bool set_scene, bool plain_sums) const {
+    if (set_scene) tracer_.set_scene(subject.scene);
+    picture(subject, 1, 0, plain_sums);
+  }
   Film picture(const Subject& subject, int spp, int number, bool plain_sums) const {
     EngineSettings engine = subject.engine;
     engine.spp = spp;
@@ -49,36 +79,26 @@ class Choosing {
     return plain_sums ? tracer_.trace_plain(subject.camera, engine, stop_)
                       : tracer_.trace(subject.camera, engine, stop_);
   }
-  Film timed(const Subject& subject, int number, bool plain_sums,
-             std::vector<double>& seconds) const {
+  Timed timed(const Subject& subject, int number, bool plain_sums) const {
     const double start = tracer_.busy();
     Film film = picture(subject, spp_, number, plain_sums);
-    seconds.push_back(tracer_.busy() - start);
-    return film;
+    return {std::move(film), tracer_.busy() - start};
   }
 
   SceneTracer& tracer_;
+  const Subject& subject_;
   int spp_;
   const std::atomic<bool>& stop_;
 };
 
-Interval time_ratio(const Variant& variant, const Variant& base) {
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < k_seeds; ++i)
-    if (base.seconds[i] > 0) ratios.push_back(variant.seconds[i] / base.seconds[i]);
-  if (ratios.empty()) return {1, 1, 1};
-  const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
-  return {median_of(ratios), *least, *most};
-}
-
-ChoiceCost cost_of(const Choice& choice, const Variant& variant, const Variant& base,
-                   const Variant& truth) {
+ChoiceCost cost_of(const Choice& choice, const Films& films, Interval time, const Films& base,
+                   const Films& truth) {
   ChoiceCost cost;
   cost.choice = choice;
-  cost.time = time_ratio(variant, base);
-  if (variant.noise() && base.noise() && *base.noise() > 0)
-    cost.noise = *variant.noise() / *base.noise();
-  const BiasSquare square = relative_bias_square(variant.a, variant.b, {truth.a, truth.b});
+  cost.time = time;
+  if (films.noise() && base.noise() && *base.noise() > 0)
+    cost.noise = *films.noise() / *base.noise();
+  const BiasSquare square = relative_bias_square(films.a, films.b, {truth.a, truth.b});
   const double low = square.value - k_bound * square.standard_error;
   const double high = square.value + k_bound * square.standard_error;
   if (low > 0) cost.bias = {std::sqrt(square.value), std::sqrt(low), std::sqrt(high)};
@@ -90,9 +110,8 @@ ChoiceCost cost_of(const Choice& choice, const Variant& variant, const Variant& 
 std::vector<ChoiceCost> measure_choices(SceneTracer& tracer, const Subject& subject,
                                         const AccuracyOptions& options,
                                         const std::atomic<bool>& stop) {
-  const Choosing choosing(tracer, std::max(4, options.most_spp / 2), stop);
-  tracer.set_scene(subject.scene);
-  const Variant base = choosing.trace(subject);
+  const Choosing choosing(tracer, subject, std::max(4, options.most_spp / 2), stop);
+  const Films base = choosing.subject();
   const std::vector<Choice> choices = choices_for(subject);
   const auto edited = [&](const Choice& choice) {
     Subject other = subject;
@@ -103,23 +122,23 @@ std::vector<ChoiceCost> measure_choices(SceneTracer& tracer, const Subject& subj
     return choice.group == k_depth_group && choice.number == k_deepest;
   });
   DS_ASSERT(deepest != choices.end());
-  const Variant all_paths = choosing.trace(edited(*deepest));
+  const Variant all_paths = choosing.beside(edited(*deepest), false);
 
   std::vector<ChoiceCost> costs;
-  costs.push_back(
-      cost_of({"sums", "plain", 0, false, {}}, choosing.trace(subject, true), base, base));
-  // First those of this very scene, so that it is packed once.
+  const Variant plain = choosing.beside(subject, false, true);
+  costs.push_back(cost_of({"sums", "plain", 0, false, {}}, plain.films, plain.time, base, base));
+  // First those of this very scene, which stays packed.
   for (const bool scene : {false, true})
     for (const Choice& choice : choices) {
       if (choice.edits_scene != scene) continue;
-      const Subject other = edited(choice);
-      if (scene) tracer.set_scene(other.scene);
-      const Variant variant = &choice == &*deepest ? all_paths : choosing.trace(other);
+      const Variant variant =
+          &choice == &*deepest ? all_paths : choosing.beside(edited(choice), scene);
       const bool is_depth = choice.group == k_depth_group;
-      costs.push_back(cost_of(choice, variant, base, is_depth ? all_paths : base));
+      costs.push_back(
+          cost_of(choice, variant.films, variant.time, base, is_depth ? all_paths.films : base));
     }
   Choice own{k_depth_group, "as the recipe", double(subject.engine.depth_total), false, {}};
-  costs.push_back(cost_of(own, base, base, all_paths));
+  costs.push_back(cost_of(own, base, {1, 1, 1}, base, all_paths.films));
   return costs;
 }
 

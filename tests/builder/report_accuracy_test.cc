@@ -31,7 +31,8 @@ class KnownTracer : public SceneTracer {
     const double deep = engine.depth_total >= 16 ? 0 : std::pow(4.0, -engine.depth_total);
     const double mean = (1 - deep) * (camera.lens_radius_m > 0 ? 1 : 0.9);
     const double noise = 0.5 / std::sqrt(engine.spp);
-    clock_ += 0.25 + 0.002 * engine.spp * (engine.math == MathMode::fast ? 0.5 : 1.0);
+    const double seconds = 0.25 + 0.002 * engine.spp * (engine.math == MathMode::fast ? 0.5 : 1.0);
+    clock_ += seconds * (1 + slowing * ++pictures_);
     Film film = noisy_film(engine.width, static_cast<float>(mean), static_cast<float>(noise),
                            static_cast<unsigned>(engine.seed));
     film.relative_error = noise / mean;
@@ -40,7 +41,7 @@ class KnownTracer : public SceneTracer {
   Film trace_plain(const Camera& camera, const EngineSettings& engine,
                    const std::atomic<bool>& stop) override {
     Film film = trace(camera, engine, stop);
-    clock_ -= 0.0005 * engine.spp;
+    clock_ -= 0.0005 * engine.spp * (1 + slowing * pictures_);
     return film;
   }
   /// Samples of 2^24, then of 1, which a plain float sum of 2^24 loses.
@@ -71,9 +72,11 @@ class KnownTracer : public SceneTracer {
   double busy() const override { return clock_; }
 
   std::size_t lights = 0;
+  double slowing = 0;  ///< what a picture takes more than the one before
 
  private:
   double clock_ = 0;
+  int pictures_ = 0;
 };
 
 class AccuracyTest : public testing::Test {
@@ -152,6 +155,24 @@ TEST_F(AccuracyTest, FindsWhatChoicesCost) {
   EXPECT_FALSE(costs.at("path depth 16").bias.has_value());
   EXPECT_NEAR(costs.at("path depth as the recipe").bias->value, std::pow(4.0, -6), 1e-4);
   EXPECT_NEAR(costs.at("effect lens").noise.value(), 1 / 0.9, 1e-6);
+}
+
+TEST_F(AccuracyTest, AMachineThatSlowsDownChangesNoChoicesCost) {
+  tracer_.slowing = 0.01;
+  AccuracyOptions options;
+  options.most_spp = 64;
+  options.seeds = 2;
+  const PairAccuracy pair = measure(options, k_with_lens).pairs.front();
+  ASSERT_GT(pair.choices.size(), 15U);
+  for (const ChoiceCost& cost : pair.choices) {
+    const bool is_fast = cost.choice.group == "math";
+    const bool is_plain = cost.choice.group == "sums";
+    const double expected = is_fast ? 0.282 / 0.314 : is_plain ? 0.298 / 0.314 : 1;
+    // Between the first and the last of a choice's pictures the machine slows by 6 % at most.
+    EXPECT_NEAR(cost.time.value, expected, 0.002) << cost.choice.group << " " << cost.choice.name;
+    EXPECT_LE(cost.time.low, cost.time.value);
+    EXPECT_LE(cost.time.value, cost.time.high);
+  }
 }
 
 TEST_F(AccuracyTest, MasksOfOneRayMissWhatLiesBesideIt) {
