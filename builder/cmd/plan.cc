@@ -6,13 +6,13 @@
 #include "builder/cmd/stop_signal.h"
 #include "builder/cmd/verbs.h"
 #include "builder/report/budget.h"
+#include "tracer/base/process_folder.h"
 #include "tracer/device/program_cache.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdio>
-#include <unistd.h>
 
 namespace ds {
 namespace {
@@ -64,9 +64,9 @@ Calibration calibration_of(const Arguments& arguments, const Dataset& dataset, I
   const auto renderer = make_tracer_renderer(inputs, dataset.recipe, options);
   const std::filesystem::path cache = default_cache_folder();
   const auto told = [](const std::string& what) { fmt::print(stderr, "{}\n", what); };
-  return calibrate(
-      dataset.recipe, inputs, *renderer, CalibrationCache(cache), {arguments.recalibrate, by_error},
-      cache / fmt::format("calibrating-{}", ::getpid()), {told, wall_clock, stop_on_signal()});
+  return calibrate(dataset.recipe, inputs, *renderer, CalibrationCache(cache),
+                   {arguments.recalibrate, by_error}, make_process_folder(cache / "calibrating"),
+                   {told, wall_clock, stop_on_signal()});
 }
 
 /// A larger engine.max_spp, and the error that the budget buys with it.
