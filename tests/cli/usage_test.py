@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Exit codes and messages of wrong commands; needs no OpenCL device."""
 import os
+import shutil
+import subprocess
 
-from harness import IMAGES, TinyCase, main
+from harness import IMAGES, Run, TinyCase, main
 
 VERBS = ["build", "plan", "status", "explain", "verify", "accuracy", "models", "log", "devices"]
 
@@ -55,6 +57,17 @@ class UsageTest(TinyCase):
         run = self.run_it("plan", self.recipe)
         self.assertEqual(run.code, 1, run)
         self.assertIn("red.mat:1", run.out)
+
+    def test_images_are_loaded_where_they_are_needed(self):
+        alone = self.folder / "alone"
+        shutil.copy(self.dsbuild, alone)
+        for verb in (["--version"], ["plan", self.recipe], ["status", self.recipe], ["devices"]):
+            run = Run(subprocess.run([alone, *map(str, verb)], capture_output=True, text=True, check=False))
+            self.assertEqual(run.code, 0, run)
+        run = Run(subprocess.run([alone, "build", self.recipe], capture_output=True, text=True, check=False))
+        self.assertEqual(run.code, 1, run)
+        self.assertIn("cannot load what reads and writes images", run.err)
+        self.assertIn("dsbuild_images.so", run.err)
 
     def test_looking_needs_no_device_and_writes_nothing(self):
         # An empty folder of vendors leaves the OpenCL loader nothing to find.

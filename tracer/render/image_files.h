@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <span>
@@ -11,7 +12,10 @@ namespace ds {
 
 enum class SampleType { uint8, uint16, half, float32 };
 /// "uint8", "uint16", "half", "float".
-const char* sample_type_name(SampleType type);
+inline constexpr const char* sample_type_name(SampleType type) {
+  constexpr std::array k_names{"uint8", "uint16", "half", "float"};
+  return k_names[static_cast<std::size_t>(type)];
+}
 
 /// The pixels of a file as they are stored: no gamma, colours not multiplied by alpha. Row 0 is the
 /// top, left to right, channels interleaved in the order R, G, B, A where they have these names;

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every use of OpenImageIO: encoded pictures and films out, image files in. A module of its own:
+// see image_codec.h.
+#include "tracer/base/error.h"
+#include "tracer/render/image_codec.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <charconv>
+#include <mutex>
+#include <string_view>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t k_max_pixels = std::uint64_t{1} << 28;
+constexpr const char* k_rejected_attribute = "dsbuild:rejectedSamples";
+constexpr const char* k_error_attribute = "dsbuild:relativeError";
+
+/// The pictures are small, and many processes share a machine: no threads of the library's own.
+void set_up_library() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    OIIO::attribute("threads", 1);
+    OIIO::attribute("exr_threads", -1);  // -1: none; 0 would be all cores
+  });
+}
+
+/// The library's message on one line.
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  while (!text.empty() && text.back() == ' ')
+    text.pop_back();
+  return text;
+}
+
+std::vector<std::byte> encode(const char* format, const OIIO::ImageSpec& spec, const void* pixels) {
+  set_up_library();
+  OIIO::Filesystem::IOVecOutput memory;
+  const std::string name = std::string("memory.") + format;
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(name, &memory);
+  const bool good = output && output->open(name, spec) &&
+                    output->write_image(spec.format, pixels) && output->close();
+  if (!good)
+    fail(ErrorKind::io, "cannot encode a {} x {} {} picture: {}", spec.width, spec.height, format,
+         one_line(output ? output->geterror() : OIIO::geterror()));
+  const auto bytes = std::as_bytes(std::span(memory.buffer()));
+  return {bytes.begin(), bytes.end()};
+}
+
+OIIO::ImageSpec exr_spec(int width, int height, std::vector<std::string> channels) {
+  OIIO::ImageSpec spec(width, height, static_cast<int>(channels.size()), OIIO::TypeDesc::FLOAT);
+  spec.channelnames = std::move(channels);
+  spec.attribute("compression", "zip");
+  spec.attribute("DateTime", "");  // left out, it would be the time of writing
+  return spec;
+}
+
+std::optional<SampleType> sample_type(OIIO::TypeDesc format) {
+  if (format == OIIO::TypeDesc::UINT8) return SampleType::uint8;
+  if (format == OIIO::TypeDesc::UINT16) return SampleType::uint16;
+  if (format == OIIO::TypeDesc::HALF) return SampleType::half;
+  if (format == OIIO::TypeDesc::FLOAT) return SampleType::float32;
+  return std::nullopt;
+}
+
+OIIO::TypeDesc library_type(SampleType type) {
+  switch (type) {
+    case SampleType::uint8:
+      return OIIO::TypeDesc::UINT8;
+    case SampleType::uint16:
+      return OIIO::TypeDesc::UINT16;
+    case SampleType::half:
+      return OIIO::TypeDesc::HALF;
+    case SampleType::float32:
+      return OIIO::TypeDesc::FLOAT;
+  }
+  DS_ASSERT(false);
+  return {};
+}
+
+OIIO::ImageSpec reading_options() {
+  OIIO::ImageSpec options;
+  options.attribute("oiio:UnassociatedAlpha", 1);
+  return options;
+}
+
+DecodedImage decode(OIIO::ImageInput& input, const std::string& name, Halves halves) {
+  const OIIO::ImageSpec spec = input.spec();
+  const bool sizes_good = spec.width > 0 && spec.height > 0 && spec.depth <= 1 && !spec.deep;
+  if (!sizes_good || spec.image_pixels() > k_max_pixels)
+    fail(ErrorKind::asset, "{}: wanted an image of 1 to {} pixels, found {} x {}{}", name,
+         k_max_pixels, spec.width, spec.height, spec.deep ? ", deep" : "");
+  if (spec.nchannels < 1 || spec.nchannels > 4)
+    fail(ErrorKind::asset, "{}: wanted 1 to 4 channels, found {}", name, spec.nchannels);
+  const std::optional<SampleType> type = sample_type(spec.format);
+  if (!type)
+    fail(ErrorKind::asset, "{}: wanted samples of type uint8, uint16, half or float, found {}",
+         name, spec.format.c_str());
+  DecodedImage decoded{spec.width, spec.height, spec.nchannels, spec.alpha_channel, *type, {}};
+  if (halves == Halves::widen && decoded.type == SampleType::half)
+    decoded.type = SampleType::float32;
+  const OIIO::TypeDesc format = library_type(decoded.type);
+  decoded.samples.resize(static_cast<std::size_t>(spec.image_pixels()) *
+                         static_cast<std::size_t>(spec.nchannels) * format.size());
+  if (!input.read_image(0, 0, 0, spec.nchannels, format, decoded.samples.data()))
+    fail(ErrorKind::asset, "{}: cannot read the pixels: {}", name, one_line(input.geterror()));
+  return decoded;
+}
+
+bool starts_with(std::span<const std::byte> bytes, std::string_view magic) {
+  return bytes.size() >= magic.size() &&
+         std::equal(magic.begin(), magic.end(), bytes.begin(),
+                    [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
+}
+
+/// A number that `film_exr` wrote beside the pixels.
+template <typename Number>
+Number film_number(const OIIO::ImageSpec& spec, const char* attribute, const std::string& name) {
+  const std::string text = spec.get_string_attribute(attribute);
+  Number number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || text.empty())
+    fail(ErrorKind::asset,
+         "{}: no film of ours: wanted the attribute {} with a number, found \"{}\"", name,
+         attribute, text);
+  return number;
+}
+
+/// An open reader on bytes in memory.
+class MemoryInput {
+ public:
+  MemoryInput(std::span<const std::byte> bytes, const std::string& name)
+      : reader_(bytes.data(), bytes.size()) {
+    set_up_library();
+    const bool png = starts_with(bytes, "\x89PNG"), exr = starts_with(bytes, "\x76\x2f\x31\x01");
+    if (!png && !exr) fail(ErrorKind::asset, "{}: wanted a PNG or EXR file, found neither", name);
+    // By a format's name alone: given a file name, the library looks for that file.
+    const char* format = png ? "png" : "openexr";
+    input_ = OIIO::ImageInput::create(format);
+    OIIO::ImageSpec spec;
+    if (!input_ || !input_->set_ioproxy(&reader_) || !input_->open(format, spec, reading_options()))
+      fail(ErrorKind::asset, "{}: cannot be read as an image: {}", name,
+           one_line(input_ ? input_->geterror() : OIIO::geterror()));
+  }
+  OIIO::ImageInput& input() { return *input_; }
+
+ private:
+  OIIO::Filesystem::IOMemReader reader_;
+  std::unique_ptr<OIIO::ImageInput> input_;
+};
+
+DecodedImage decode_file(const fs::path& file, Halves halves) {
+  set_up_library();
+  std::error_code error;
+  if (!fs::is_regular_file(file, error))
+    fail(ErrorKind::asset, "{}: wanted an image file, found none", file.string());
+  const OIIO::ImageSpec options = reading_options();
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), &options);
+  if (!input)
+    fail(ErrorKind::asset, "{}: cannot be read as an image: {}", file.string(),
+         one_line(OIIO::geterror()));
+  return decode(*input, file.string(), halves);
+}
+
+DecodedImage decode_bytes(std::span<const std::byte> bytes, const std::string& name,
+                          Halves halves) {
+  MemoryInput memory(bytes, name);
+  return decode(memory.input(), name, halves);
+}
+
+std::vector<std::byte> png(const Picture& picture) {
+  DS_ASSERT(picture.channels == 1 || picture.channels == 3);
+  OIIO::ImageSpec spec(picture.width, picture.height, picture.channels, OIIO::TypeDesc::UINT8);
+  DS_ASSERT(picture.pixels.size() == spec.image_bytes());
+  spec.attribute("png:compressionLevel", 6);
+  spec.attribute("png:filter",
+                 0x80);  // libpng's PNG_FILTER_PAETH on every row: its choice by trial may change
+  return encode("png", spec, picture.pixels.data());
+}
+
+std::vector<std::byte> depth_exr(const Geometry& geometry) {
+  const OIIO::ImageSpec spec = exr_spec(geometry.width, geometry.height, {"Z"});
+  DS_ASSERT(geometry.depth.size() * sizeof(float) == spec.image_bytes());
+  return encode("exr", spec, geometry.depth.data());
+}
+
+std::vector<std::byte> film_exr(const Film& film) {
+  OIIO::ImageSpec spec = exr_spec(film.width, film.height, {"R", "G", "B"});
+  DS_ASSERT(film.rgb.size() * sizeof(float) == spec.image_bytes());
+  spec.attribute(k_rejected_attribute, std::to_string(film.rejected_samples));
+  if (film.relative_error)  // the shortest text that reads back exactly
+    spec.attribute(k_error_attribute, fmt::format("{}", *film.relative_error));
+  return encode("exr", spec, film.rgb.data());
+}
+
+Film film_of_exr(const std::vector<std::byte>& bytes, const std::string& name) {
+  MemoryInput memory(bytes, name);
+  const DecodedImage decoded = decode(memory.input(), name, Halves::keep);
+  if (decoded.channels != 3 || decoded.type != SampleType::float32)
+    fail(ErrorKind::asset, "{}: no film of ours: wanted 3 channels of float, found {} of {}", name,
+         decoded.channels, sample_type_name(decoded.type));
+  Film film{
+      decoded.width, decoded.height, std::vector<float>(decoded.samples.size() / sizeof(float)),
+      film_number<std::uint64_t>(memory.input().spec(), k_rejected_attribute, name), std::nullopt};
+  if (memory.input().spec().find_attribute(k_error_attribute) != nullptr)
+    film.relative_error = film_number<double>(memory.input().spec(), k_error_attribute, name);
+  std::copy(decoded.samples.begin(), decoded.samples.end(),
+            std::as_writable_bytes(std::span(film.rgb)).begin());
+  return film;
+}
+
+}  // namespace
+
+extern "C" const ImageCodec* dsbuild_image_codec() {
+  static constexpr ImageCodec codec{decode_file, decode_bytes, png,
+                                    depth_exr,   film_exr,     film_of_exr};
+  return &codec;
+}
+
+}  // namespace ds
