@@ -14,6 +14,7 @@
 #include "tracer/base/files.h"
 #include "tracer/device/opencl.h"
 #include "tracer/device/program_text.h"
+#include "tracer/render/path_programs.h"
 #include "tracer/render/render.h"
 #include "tracer/scene/sdl.h"
 
@@ -103,7 +104,7 @@ json measure_compiling(const std::vector<Pair>& pairs) {
   const Device device("");
   const TemporaryFolder cache;
   const std::string options =
-      fmt::format("{} -DDS_LANES={}", k_strict_options, device.info().is_cpu ? 16 : 1);
+      fmt::format("{} -DDS_LANES={}", k_strict_options, default_lanes(device.info()));
   json result = json::array();
   const auto compile = [&](const std::string& text, const std::vector<std::string>& names) {
     const auto begin = std::chrono::steady_clock::now();

@@ -37,7 +37,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t k_local_size = 8;
-/// Rays of a batch: on a CPU the path tracer has this many in flight.
+/// Rays of a batch: the most that the path tracer has in flight on a CPU.
 constexpr std::size_t k_lanes = 16;
 /// Each timing traces its rays this often, so that it lasts a tenth of a second and more.
 constexpr int k_rounds = 10;

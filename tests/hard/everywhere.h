@@ -13,7 +13,7 @@ namespace ds::hard {
 
 struct Way {
   MathMode math = MathMode::strict;
-  int lanes = 16;  ///< what TracerOptions::lanes = 0 is on processors
+  int lanes = 16;  ///< the most there are; what processors get by default is 16 or 8
   bool full_program = false;
   std::string name() const;
 };

@@ -27,6 +27,7 @@ struct DeviceInfo {
   std::string version;  ///< CL_DEVICE_VERSION; PoCL writes the CPU it compiles for into it
   std::string driver;
   bool is_cpu = false;
+  unsigned float_lanes = 1;  ///< floats in the widest vector it has instructions for
   unsigned compute_units = 0;
   std::uint64_t global_memory_bytes = 0, max_allocation_bytes = 0;
 };

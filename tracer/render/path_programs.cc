@@ -25,6 +25,11 @@ bool was_compiled(const std::shared_future<Program>& program) {
 
 }  // namespace
 
+int default_lanes(const DeviceInfo& device) {
+  if (!device.is_cpu) return 1;
+  return device.float_lanes >= 16 ? 16 : 8;
+}
+
 PathPrograms::PathPrograms(const Device& device, std::string definitions,
                            std::filesystem::path cache_folder)
     : device_(device),

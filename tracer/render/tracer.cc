@@ -82,9 +82,7 @@ struct Tracer::State {
   explicit State(const TracerOptions& o)
       : options(o),
         device(o.device),
-        lanes(o.lanes != 0           ? o.lanes
-              : device.info().is_cpu ? 16
-                                     : 1),
+        lanes(o.lanes != 0 ? o.lanes : default_lanes(device.info())),
         programs(device,
                  fmt::format("-DDS_LANES={}{}{}", lanes, o.count_rays ? " -DDS_COUNT_RAYS" : "",
                              o.plain_sums ? " -DDS_PLAIN_SUMS" : ""),

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Programs: one for each set of features, got ready while another picture is traced.
+#include "tracer/render/path_programs.h"
+
 #include "tests/render/pictures.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
@@ -22,6 +24,21 @@ class Programs : public testing::Test {
  private:
   TemporaryFolder folder_;
 };
+
+TEST(DefaultLanes, FollowTheVectorsOfTheProcessor) {
+  const auto lanes = [](bool is_cpu, unsigned floats) {
+    DeviceInfo device;
+    device.is_cpu = is_cpu;
+    device.float_lanes = floats;
+    return default_lanes(device);
+  };
+  EXPECT_EQ(lanes(true, 16), 16);
+  EXPECT_EQ(lanes(true, 8), 8);
+  EXPECT_EQ(lanes(true, 4), 8);
+  EXPECT_EQ(lanes(false, 1), 1);
+  for (const DeviceInfo& device : list_devices())
+    EXPECT_TRUE(device.float_lanes >= 1 && device.float_lanes <= 16) << device.name;
+}
 
 TEST_F(Programs, OneMadeAheadGivesTheSameBits) {
   const pictures::Picture &first = all_[0], &second = all_[1];
