@@ -37,6 +37,7 @@ class Choosing {
   Choosing(SceneTracer& tracer, const Subject& subject, int spp, const std::atomic<bool>& stop)
       : tracer_(tracer), subject_(subject), spp_(spp), stop_(stop) {}
 
+  /// First of all: `beside` goes on from the subject's scene and program, and ends with them.
   Films subject() const {
     make_ready(subject_, true, false);
     return {timed(subject_, 0, false).film, timed(subject_, 1, false).film};
@@ -45,7 +46,6 @@ class Choosing {
   /// `edits_scene`: `other` has a scene of its own. The order subject, other, other, subject takes
   /// out of the ratio what the machine evenly becomes slower or faster by.
   Variant beside(const Subject& other, bool edits_scene, bool plain_sums = false) const {
-    make_ready(subject_, edits_scene, false);
     const double first = timed(subject_, 0, false).seconds;
     make_ready(other, edits_scene, plain_sums);
     Timed a = timed(other, 0, plain_sums);

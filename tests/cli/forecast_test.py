@@ -19,10 +19,10 @@ class ForecastTest(TinyCase):
         super().setUp()
         (self.folder / "cache/dsbuild").mkdir(parents=True)
         (self.folder / "cache/dsbuild/programs").symlink_to(self.programs)
+        self.environment = dict(os.environ, XDG_CACHE_HOME=str(self.folder / "cache"))
 
     def plan(self, *arguments, code=0):
-        environment = dict(os.environ, XDG_CACHE_HOME=str(self.folder / "cache"))
-        run = self.run_it("plan", self.recipe, "-o", self.out, *arguments, env=environment)
+        run = self.run_it("plan", self.recipe, "-o", self.out, *arguments, env=self.environment)
         self.assertEqual(run.code, code, run)
         return run
 
@@ -40,7 +40,7 @@ class ForecastTest(TinyCase):
     def test_what_a_killed_calibration_left_is_removed(self):
         killed = self.start("plan", self.recipe, "-o", self.out, "--time", "--set", "engine.spp=1024",
                             "--set", "engine.width=256", "--set", "engine.height=256",
-                            env=dict(os.environ, XDG_CACHE_HOME=str(self.folder / "cache")))
+                            env=self.environment)
         killed.stderr.readline()  # "calibrating 1 of 8 ..."
         killed.kill()
         killed.communicate()

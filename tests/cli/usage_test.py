@@ -2,9 +2,8 @@
 """Exit codes and messages of wrong commands; needs no OpenCL device."""
 import os
 import shutil
-import subprocess
 
-from harness import IMAGES, Run, TinyCase, main
+from harness import IMAGES, TinyCase, main
 
 VERBS = ["build", "plan", "status", "explain", "verify", "accuracy", "models", "log", "devices"]
 
@@ -61,10 +60,11 @@ class UsageTest(TinyCase):
     def test_images_are_loaded_where_they_are_needed(self):
         alone = self.folder / "alone"
         shutil.copy(self.dsbuild, alone)
+        self.dsbuild = alone
         for verb in (["--version"], ["plan", self.recipe], ["status", self.recipe], ["devices"]):
-            run = Run(subprocess.run([alone, *map(str, verb)], capture_output=True, text=True, check=False))
+            run = self.run_it(*verb)
             self.assertEqual(run.code, 0, run)
-        run = Run(subprocess.run([alone, "build", self.recipe], capture_output=True, text=True, check=False))
+        run = self.run_it("build", self.recipe)
         self.assertEqual(run.code, 1, run)
         self.assertIn("cannot load what reads and writes images", run.err)
         self.assertIn("dsbuild_images.so", run.err)

@@ -13,7 +13,7 @@
 namespace ds {
 
 /// What OpenImageIO does for image_files.h and develop.h, which say what each function does. It
-/// brings 250 libraries, and loading them takes 0.25 s, ten times what else a command does at its
+/// brings 250 libraries, and loading them takes 0.3 s, ten times what else a command does at its
 /// start: so it is a module that is loaded at the first image read or written.
 struct ImageCodec {
   DecodedImage (*decode_file)(const std::filesystem::path& file, Halves halves);
