@@ -135,8 +135,8 @@ DS_FN void prepare_rays(Batch* b, int place, const __global float8* nodes, const
 }
 
 /// Prepares the rays and puts the wanted ones on the list of those that test a node (the root).
-DS_FN uint add_rays(Batch* b, int place, uint count, const __global float8* nodes,
-                    const LaneRays* rays) {
+DS_OUT_OF_LINE uint add_rays(Batch* b, int place, uint count, const __global float8* nodes,
+                             const LaneRays* rays) {
   int wanted[DS_LANES] __attribute__((aligned(64)));
   *(mask*)wanted = rays->wanted & traceable_lanes(rays);
   prepare_rays(b, place, nodes, rays);

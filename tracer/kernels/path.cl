@@ -393,11 +393,17 @@ DS_OUT_OF_LINE void trace_pixels(PixelQueue* queue, const __global SceneData* re
   paths.shadow.origin = paths.shadow.direction = splat((real)(0.0f));
   paths.shadow.t_max = (real)(0.0f);
   paths.direct = paths.closing = splat((real)(0.0f));
-  paths.quarter = paths.closing_quarter = (natural)(0u);
-  mask busy = change_pixels(&pixels, &sums, queue, &view, (mask)(-1));
-  paths.sample = pixels.begin;
-  start_paths(&paths, busy, &pixels, &view);
-  while (any_lane(busy)) {
+  paths.sample = paths.quarter = paths.closing_quarter = (natural)(0u);
+  mask busy = (mask)(0), start = (mask)(0), finished = (mask)(-1);
+  for (;;) {
+    if (any_lane(finished)) {
+      const mask changed = change_pixels(&pixels, &sums, queue, &view, finished);
+      paths.sample = choose_natural(changed, pixels.begin, paths.sample);
+      start = start | changed;
+      busy = (busy & !finished) | changed;
+    }
+    if (!any_lane(busy)) break;
+    if (any_lane(start)) start_paths(&paths, start, &pixels, &view);
     const StepEnds ends = advance(&paths, &sums, &pixels, &scene, &view, t);
     const mask over = ends.done | ends.closes;
     if (any_lane(ends.done))
@@ -407,16 +413,9 @@ DS_OUT_OF_LINE void trace_pixels(PixelQueue* queue, const __global SceneData* re
     paths.closes = ends.closes;
     paths.alive = paths.alive & !over;
     paths.sample += choose_natural(over, (natural)(1u), (natural)(0u));
-    mask start = over & (paths.sample < pixels.end);
+    start = over & (paths.sample < pixels.end);
     // A pixel whose last sample waits for its shadow ray keeps its lane for one more step.
-    const mask finished = busy & !(paths.alive | paths.closes | start);
-    if (any_lane(finished)) {
-      const mask changed = change_pixels(&pixels, &sums, queue, &view, finished);
-      paths.sample = choose_natural(changed, pixels.begin, paths.sample);
-      start = start | changed;
-      busy = (busy & !finished) | changed;
-    }
-    if (any_lane(start)) start_paths(&paths, start, &pixels, &view);
+    finished = busy & !(paths.alive | paths.closes | start);
   }
   DS_STORE_RAY_COUNTS(paths);
 }

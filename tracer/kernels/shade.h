@@ -74,7 +74,7 @@ DS_FN natural resolve_mix(MaterialTables t, natural material, mask active, const
 #endif
 
 /// Value and pdf of the materials at `wi` (local).
-DS_FN BsdfValue evaluate_material(const MaterialPoint* m, Viewer viewer, real3 wi) {
+DS_INLINED BsdfValue evaluate_material(const MaterialPoint* m, Viewer viewer, real3 wi) {
   BsdfValue result = no_value();
 #define DS_EVALUATE(name, number)                                 \
   {                                                               \

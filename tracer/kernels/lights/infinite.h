@@ -64,8 +64,8 @@ typedef struct {
 } CellPoint;
 
 /// Bilinear radiance within cell (column, row) at fractions fx, fy of it.
-DS_FN CellPoint infinite_cell(LightTables t, DS_GLOBAL float* p, natural column, natural row,
-                              real fx, real fy) {
+DS_OUT_OF_LINE CellPoint infinite_cell(LightTables t, DS_GLOBAL float* p, natural column,
+                                       natural row, real fx, real fy) {
   const uint width = as_uint(p[infinite_width]);
   const uint height = as_uint(p[infinite_height]);
   const bool shared = as_uint(p[infinite_shared_exponent]) != 0u;

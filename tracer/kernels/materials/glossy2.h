@@ -34,8 +34,12 @@ DS_FN real3 glossy2_normal_reflectance(const real* p) {
   return choose(index > 0.0f, splat(r * r), input3(p, glossy2_ks));
 }
 
-DS_FN real glossy2_absorption(real absorption, real path) {
-  return exponential(-absorption * path);
+/// What is left on the way in and out, at these cosines.
+DS_OUT_OF_LINE real3 glossy2_absorption(const real* p, real cos_o, real cos_i) {
+  const real path =
+      p[glossy2_d] * (1.0f / greater(cos_o, (real)(1e-4f)) + 1.0f / greater(cos_i, (real)(1e-4f)));
+  const real3 ka = input3(p, glossy2_ka);
+  return vec(exponential(-ka.x * path), exponential(-ka.y * path), exponential(-ka.z * path));
 }
 
 /// The coat's facets, its reflectance at normal incidence, and Fresnel's part in what comes back
@@ -98,11 +102,7 @@ DS_FN real3 glossy2_base(const real* p, Coat c, real3 passed, real3 wo, real3 wi
           coupled.z / greater(mean.z, (real)(1e-6f)));
   const real3 base = scale(mul(input3(p, glossy2_kd), through), wi.z * DS_INV_PI);
   if (!any_lane(p[glossy2_d] > 0.0f)) return base;
-  const real path =
-      p[glossy2_d] * (1.0f / greater(wo.z, (real)(1e-4f)) + 1.0f / greater(wi.z, (real)(1e-4f)));
-  const real3 ka = input3(p, glossy2_ka);
-  return mul(base, vec(glossy2_absorption(ka.x, path), glossy2_absorption(ka.y, path),
-                       glossy2_absorption(ka.z, path)));
+  return mul(base, glossy2_absorption(p, wo.z, wi.z));
 }
 
 /// Probability of sampling the coat's first reflection: the coat's share of what is reflected, as
@@ -117,7 +117,8 @@ DS_FN real glossy2_lobe_probability(const real* p, Coat c, real3 passed, real3 w
 }
 
 /// All lobes at wi, which is above the surface; `first` is the probability above.
-DS_FN BsdfValue glossy2_all(const real* p, Coat c, real3 passed, real first, real3 wo, real3 wi) {
+DS_INLINED BsdfValue glossy2_all(const real* p, Coat c, real3 passed, real first, real3 wo,
+                                 real3 wi) {
   const real3 h = half_vector(wo, wi);
   const Lobe lobe = ggx_lobe(c.roughness, wo, wi, h);
   BsdfValue v;

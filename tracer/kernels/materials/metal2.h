@@ -29,7 +29,7 @@ DS_FN real3 metal2_average_fresnel(const real* p) {
 }
 
 /// Both lobes at wi, which is above the surface; h is their half vector.
-DS_FN BsdfValue metal2_both(const real* p, real3 wo, real3 wi, real3 h) {
+DS_INLINED BsdfValue metal2_both(const real* p, real3 wo, real3 wi, real3 h) {
   const Roughness r = roughness_of(p[metal2_uroughness], p[metal2_vroughness]);
   const Rescattering m = ggx_rescattering(r);
   const Lobe lobe = ggx_lobe(r, wo, wi, h);
