@@ -5,6 +5,7 @@
 #include "tracer/base/error.h"
 #include "tracer/kernels/all_nodes.h"
 #include "tracer/kernels/lists.h"
+#include "tracer/kernels/prepared.h"
 #include "tracer/scene/type_tables.h"
 
 #include <algorithm>
@@ -32,7 +33,10 @@ using Sampling = BsdfSample (*)(const float*, Viewer, real2, real2);
 
 Sampling sampling_of(int type) {
   using namespace kernels;
-#define DS_SAMPLING(sdl_name, prefix, PREFIX) prefix##_sample,
+#define DS_SAMPLING(sdl_name, prefix, PREFIX)                                \
+  [](const float* p, Viewer viewer, real2 u, real2 lobe) {                   \
+    return prefix##_sample(DS_PREPARED(prefix, p, viewer), viewer, u, lobe); \
+  },
   static constexpr Sampling rows[] = {DS_ALL_MATERIALS(DS_SAMPLING)};
 #undef DS_SAMPLING
   return rows[type];

@@ -58,7 +58,8 @@ class UsageTest(TinyCase):
         self.assertIn("red.mat:1", run.out)
 
     def test_images_are_loaded_where_they_are_needed(self):
-        alone = self.folder / "alone"
+        alone = self.folder / "alone/bin/dsbuild"  # what it would load lies in ../lib
+        alone.parent.mkdir(parents=True)
         shutil.copy(self.dsbuild, alone)
         self.dsbuild = alone
         for verb in (["--version"], ["plan", self.recipe], ["status", self.recipe], ["devices"]):

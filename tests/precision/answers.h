@@ -7,6 +7,7 @@
 #include "tests/precision/questions.h"
 #include "tests/tracer/kernels/mix_on_host.h"
 #include "tracer/kernels/lists.h"
+#include "tracer/kernels/prepared.h"
 
 #include <bit>
 #include <cstring>
@@ -34,17 +35,18 @@ Three three(real3 v) {
 
 BsdfAnswer ask(const BsdfQuestion& q) {
   const std::vector<real> inputs(q.inputs.begin(), q.inputs.end());
+  const real* p = inputs.data();
   Viewer viewer;
   viewer.wo = of(q.wo);
   viewer.outside = q.outside;
   BsdfValue value = no_value();
   BsdfSample sample = no_sample();
   int row = 0;
-#define DS_ASK(sdl_name, prefix, PREFIX)                                            \
-  if (row++ == q.material) {                                                        \
-    value = prefix##_evaluate(inputs.data(), viewer, of(q.wi));                     \
-    sample = prefix##_sample(inputs.data(), viewer, of(q.numbers[0], q.numbers[1]), \
-                             of(q.numbers[2], q.numbers[3]));                       \
+#define DS_ASK(sdl_name, prefix, PREFIX)                                                      \
+  if (row++ == q.material) {                                                                  \
+    value = prefix##_evaluate(DS_PREPARED(prefix, p, viewer), viewer, of(q.wi));              \
+    sample = prefix##_sample(DS_PREPARED(prefix, p, viewer), viewer,                          \
+                             of(q.numbers[0], q.numbers[1]), of(q.numbers[2], q.numbers[3])); \
   }
   DS_ALL_MATERIALS(DS_ASK)
 #undef DS_ASK

@@ -5,14 +5,19 @@
 //
 //   DS_NAME_INPUTS(INPUT)    its inputs: INPUT(slot, width, default), slot being NAME_input
 //   DS_NAME_NUMBERS(NUMBER)  its fixed numbers: NUMBER(slot, default)
+//   NAME_derived             how many numbers it derives from the inputs and the viewer, once for
+//                            all questions; k_most_derived at most
+//   void       NAME_prepare(const real* p, Viewer viewer, real* derived)
 //   BsdfValue  NAME_evaluate(const real* p, Viewer viewer, real3 wi)
 //   BsdfSample NAME_sample(const real* p, Viewer viewer, real2 u, real2 lobe)
 //
-// `p` holds the inputs' values at the surface point. No material returns NaN or a negative number
-// for any input in range.
+// `p` holds the inputs' values at the surface point, and from NAME_end on what was derived. No
+// material returns NaN or a negative number for any input in range.
 #pragma once
 
 #include "tracer/kernels/sampler.h"
+
+enum { k_most_derived = 16 };
 
 /// Turns an input list into word offsets: each slot's number is the sum of the widths before it.
 #define DS_SLOT(slot, width, default_value) slot, slot##_last = slot + width - 1,
@@ -63,6 +68,11 @@ DS_FN mask all_lanes(void) {
 
 DS_FN real3 input3(const real* p, int slot) {
   return vec(p[slot], p[slot + 1], p[slot + 2]);
+}
+DS_FN void put3(real* p, int slot, real3 v) {
+  p[slot] = v.x;
+  p[slot + 1] = v.y;
+  p[slot + 2] = v.z;
 }
 
 /// Malley's method: cosine-weighted hemisphere, pdf cos / pi.

@@ -366,6 +366,7 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
   leaving.viewer.wo = to_local(leaving.frame, wo);
   leaving.viewer.wo.z = greater(leaving.viewer.wo.z, (real)(1e-3f));
   leaving.viewer.outside = s.outside;
+  prepare_material(&m, leaving.viewer);
 #ifdef DS_GUIDED
   leaving.guide = guide_at(t->guide, active & DS_GUIDED(m.type), s.position);
 #endif

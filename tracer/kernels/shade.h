@@ -16,10 +16,11 @@ typedef struct {
   uint material_words;
 } MaterialTables;
 
-/// A material at a surface point: its kind and its inputs' values, lane by lane.
+/// A material at a surface point: its kind, its inputs' values, and what it has derived from them,
+/// lane by lane.
 typedef struct {
   natural type;
-  real inputs[DS_MATERIAL_INPUTS];
+  real inputs[DS_MATERIAL_INPUTS + k_most_derived];
 } MaterialPoint;
 
 /// Fills the inputs from the materials' rows, then runs the programs of textured ones, each once
@@ -72,6 +73,21 @@ DS_FN natural resolve_mix(MaterialTables t, natural material, mask active, const
   return material;
 }
 #endif
+
+/// Lets the materials derive what all questions of this viewer share.
+DS_FN void prepare_material(MaterialPoint* m, Viewer viewer) {
+  for (int i = 0; i < k_most_derived; ++i)
+    m->inputs[DS_MATERIAL_INPUTS + i] = (real)(0.0f);
+#define DS_PREPARE(name, number)                                                  \
+  if (name##_derived > 0 && any_lane(m->type == (uint)number)) {                  \
+    real derived[k_most_derived];                                                 \
+    name##_prepare(m->inputs, viewer, derived);                                   \
+    for (int i = 0; i < name##_derived; ++i)                                      \
+      m->inputs[name##_end + i] =                                                 \
+          choose(m->type == (uint)number, derived[i], m->inputs[name##_end + i]); \
+  }
+  DS_MATERIALS(DS_PREPARE)
+}
 
 /// Value and pdf of the materials at `wi` (local).
 DS_INLINED BsdfValue evaluate_material(const MaterialPoint* m, Viewer viewer, real3 wi) {

@@ -3,6 +3,7 @@
 
 #include "tracer/base/error.h"
 #include "tracer/kernels/all_nodes.h"
+#include "tracer/kernels/prepared.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
 
@@ -36,11 +37,14 @@ std::vector<float> floats(const Words& words) {
 
 kernels::BsdfSample sample_shiny(std::string_view material, const float* inputs,
                                  kernels::Viewer viewer, real2 u, real2 lobe) {
-  if (material == "glossy2") return kernels::glossy2_sample(inputs, viewer, u, lobe);
-  if (material == "metal2") return kernels::metal2_sample(inputs, viewer, u, lobe);
-  if (material == "mirror") return kernels::mirror_sample(inputs, viewer, u, lobe);
-  if (material == "glass") return kernels::glass_sample(inputs, viewer, u, lobe);
-  return kernels::no_sample();
+  using namespace kernels;
+  if (material == "glossy2")
+    return glossy2_sample(DS_PREPARED(glossy2, inputs, viewer), viewer, u, lobe);
+  if (material == "metal2")
+    return metal2_sample(DS_PREPARED(metal2, inputs, viewer), viewer, u, lobe);
+  if (material == "mirror") return mirror_sample(inputs, viewer, u, lobe);
+  if (material == "glass") return glass_sample(inputs, viewer, u, lobe);
+  return no_sample();
 }
 
 kernels::LightSample sample_light(std::string_view kind, kernels::LightTables tables, natural at,

@@ -3,6 +3,7 @@
 
 #include "tests/tracer/kernels/mix_on_host.h"
 #include "tracer/kernels/lists.h"
+#include "tracer/kernels/prepared.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,8 +41,15 @@ std::vector<float> fill(const Case& material, const Value& value) {
 
 std::vector<Case> all() {
   std::vector<Case> cases;
-#define DS_CASE(sdl_name, prefix, PREFIX) \
-  cases.push_back({sdl_name, prefix##_evaluate, prefix##_sample, &material_types()[cases.size()]});
+#define DS_CASE(sdl_name, prefix, PREFIX)                                                     \
+  cases.push_back({sdl_name,                                                                  \
+                   [](const float* p, Viewer viewer, real3 wi) {                              \
+                     return prefix##_evaluate(DS_PREPARED(prefix, p, viewer), viewer, wi);    \
+                   },                                                                         \
+                   [](const float* p, Viewer viewer, real2 u, real2 lobe) {                   \
+                     return prefix##_sample(DS_PREPARED(prefix, p, viewer), viewer, u, lobe); \
+                   },                                                                         \
+                   &material_types()[cases.size()]});
   DS_ALL_MATERIALS(DS_CASE)
 #undef DS_CASE
   std::find_if(cases.begin(), cases.end(), [](const Case& c) { return c.name == "mix"; })->type =

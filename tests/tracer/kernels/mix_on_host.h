@@ -55,11 +55,12 @@ class MixOnHost {
     row(k_outer, 3, p, 1, k_metal, k_inner);
   }
 
-  MaterialPoint resolve(real* choice) {
+  MaterialPoint resolve(real* choice, Viewer viewer) {
     MaterialPoint m;
     Surface s;
     resolve_mix({words_.data(), nullptr, nullptr, k_row}, natural{k_outer}, all_lanes(), &s, choice,
                 &m);
+    prepare_material(&m, viewer);
     return m;
   }
 
@@ -90,7 +91,7 @@ inline BsdfValue mix_evaluate(const real* p, Viewer viewer, real3 wi) {
                                       std::array{(1 + outer) * 0.5f, 1 - outer}}) {
     if (share == 0) continue;
     real choice = middle;
-    const MaterialPoint m = mix.resolve(&choice);
+    const MaterialPoint m = mix.resolve(&choice, viewer);
     const BsdfValue v = evaluate_material(&m, viewer, wi);
     mean.value = add_scaled(mean.value, v.value, share);
     mean.pdf += v.pdf * share;
@@ -100,7 +101,7 @@ inline BsdfValue mix_evaluate(const real* p, Viewer viewer, real3 wi) {
 
 /// Weight and pdf are those of the part that lobe.x led to, as in the tracer.
 inline BsdfSample mix_sample(const real* p, Viewer viewer, real2 u, real2 lobe) {
-  const MaterialPoint m = MixOnHost(p).resolve(&lobe.x);
+  const MaterialPoint m = MixOnHost(p).resolve(&lobe.x, viewer);
   return sample_material(&m, viewer, u, lobe);
 }
 

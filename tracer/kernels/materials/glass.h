@@ -12,7 +12,9 @@
   INPUT(glass_interiorior, 1, 1.5f) \
   INPUT(glass_exteriorior, 1, 1.0f)
 #define DS_GLASS_NUMBERS(NUMBER)
-enum { DS_GLASS_INPUTS(DS_SLOT) glass_end };
+enum { DS_GLASS_INPUTS(DS_SLOT) glass_end, glass_derived = 0 };
+
+DS_FN void glass_prepare(const real* p, Viewer viewer, real* derived) {}
 
 DS_FN BsdfValue glass_evaluate(const real* p, Viewer viewer, real3 wi) {
   return no_value();

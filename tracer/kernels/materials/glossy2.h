@@ -27,6 +27,18 @@
   NUMBER(glossy2_multibounce, 0.0f) \
   NUMBER(glossy2_doublesided, 0.0f)
 enum { DS_GLOSSY2_INPUTS(DS_SLOT) glossy2_end };
+/// What is derived; see Coat.
+enum {
+  glossy2_alpha,
+  glossy2_share,
+  glossy2_mean,
+  glossy2_at_normal,                             ///< 3
+  glossy2_again = glossy2_at_normal + 3,         ///< 3
+  glossy2_passed_out = glossy2_again + 3,        ///< 3
+  glossy2_passed_mean = glossy2_passed_out + 3,  ///< 3
+  glossy2_first = glossy2_passed_mean + 3,
+  glossy2_derived
+};
 
 DS_FN real3 glossy2_normal_reflectance(const real* p) {
   const real index = p[glossy2_index];
@@ -42,28 +54,20 @@ DS_OUT_OF_LINE real3 glossy2_absorption(const real* p, real cos_o, real cos_i) {
   return vec(exponential(-ka.x * path), exponential(-ka.y * path), exponential(-ka.z * path));
 }
 
-/// The coat's facets, its reflectance at normal incidence, and Fresnel's part in what comes back
-/// after several reflections.
+/// What does not depend on the direction asked for.
 typedef struct {
   Roughness roughness;
-  Rescattering again;
-  real3 ks, again_fresnel;
+  Rescattering again;   ///< several reflections among the coat's facets
+  real3 ks;             ///< reflectance at normal incidence
+  real3 again_fresnel;  ///< Fresnel's part in what comes back after several reflections
+  real3 passed;         ///< by the coat on the way to the viewer: 1 - C
+  real3 mean_passed;    ///< 1 - mean C
+  real first;           ///< probability of sampling the coat's first reflection
 } Coat;
 
 /// Schlick's mean over the cosine-weighted hemisphere: the integral of 2 c (1 - c)^5 is 1/21.
 DS_FN real glossy2_again_fresnel(Rescattering again, real ks) {
   return rescattered_fresnel(again, fma(1.0f - ks, (real)(1.0f / 21.0f), ks));
-}
-
-DS_FN Coat glossy2_coat(const real* p) {
-  Coat c;
-  c.roughness = roughness_of(p[glossy2_uroughness], p[glossy2_vroughness]);
-  c.again = ggx_rescattering(c.roughness);
-  c.ks = glossy2_normal_reflectance(p);
-  c.again_fresnel =
-      vec(glossy2_again_fresnel(c.again, c.ks.x), glossy2_again_fresnel(c.again, c.ks.y),
-          glossy2_again_fresnel(c.again, c.ks.z));
-  return c;
 }
 
 /// What the coat leaves of the light when it loses `lost` at first and has Schlick's weight
@@ -92,10 +96,55 @@ DS_FN real3 glossy2_mean_passed(Coat c) {
   return glossy2_left3(c, c.again.share * c.again.mean, grazing);
 }
 
-/// Base times cosine of wi; `passed` by the coat on the way to wo.
-DS_FN real3 glossy2_base(const real* p, Coat c, real3 passed, real3 wo, real3 wi) {
-  const real3 mean = glossy2_mean_passed(c);
-  const real3 coupled = mul(passed, glossy2_passed(c, wi.z));
+/// Probability of sampling the coat's first reflection: the coat's share of what is reflected, as
+/// seen from wo, without what comes back after several reflections. That is sampled as the base is.
+DS_FN real glossy2_lobe_probability(const real* p, Coat c, real3 wo) {
+  const real through = luminance(c.passed);
+  const real coat = 1.0f - through;
+  const real sum = fma(luminance(input3(p, glossy2_kd)), through, coat);
+  const real share = choose(
+      sum > 0.0f, greater(coat, (real)(1e-10f)) / greater(sum, (real)(1e-10f)), (real)(0.5f));
+  return clamp01(share) * (1.0f - rescattered_share(c.again, wo.z));
+}
+
+DS_FN void glossy2_prepare(const real* p, Viewer viewer, real* derived) {
+  Coat c;
+  c.roughness = roughness_of(p[glossy2_uroughness], p[glossy2_vroughness]);
+  c.again = ggx_rescattering(c.roughness);
+  c.ks = glossy2_normal_reflectance(p);
+  c.again_fresnel =
+      vec(glossy2_again_fresnel(c.again, c.ks.x), glossy2_again_fresnel(c.again, c.ks.y),
+          glossy2_again_fresnel(c.again, c.ks.z));
+  c.passed = glossy2_passed(c, viewer.wo.z);
+  derived[glossy2_alpha] = c.again.alpha;
+  derived[glossy2_share] = c.again.share;
+  derived[glossy2_mean] = c.again.mean;
+  put3(derived, glossy2_at_normal, c.ks);
+  put3(derived, glossy2_again, c.again_fresnel);
+  put3(derived, glossy2_passed_out, c.passed);
+  put3(derived, glossy2_passed_mean, glossy2_mean_passed(c));
+  derived[glossy2_first] = glossy2_lobe_probability(p, c, viewer.wo);
+}
+
+DS_FN Coat glossy2_coat(const real* p) {
+  const real* derived = p + glossy2_end;
+  Coat c;
+  c.roughness = roughness_of(p[glossy2_uroughness], p[glossy2_vroughness]);
+  c.again.alpha = derived[glossy2_alpha];
+  c.again.share = derived[glossy2_share];
+  c.again.mean = derived[glossy2_mean];
+  c.ks = input3(derived, glossy2_at_normal);
+  c.again_fresnel = input3(derived, glossy2_again);
+  c.passed = input3(derived, glossy2_passed_out);
+  c.mean_passed = input3(derived, glossy2_passed_mean);
+  c.first = derived[glossy2_first];
+  return c;
+}
+
+/// Base times cosine of wi.
+DS_FN real3 glossy2_base(const real* p, Coat c, real3 wo, real3 wi) {
+  const real3 mean = c.mean_passed;
+  const real3 coupled = mul(c.passed, glossy2_passed(c, wi.z));
   // A coat that lets nothing through has nothing under it: 0 / 1e-6.
   const real3 through =
       vec(coupled.x / greater(mean.x, (real)(1e-6f)), coupled.y / greater(mean.y, (real)(1e-6f)),
@@ -105,36 +154,21 @@ DS_FN real3 glossy2_base(const real* p, Coat c, real3 passed, real3 wo, real3 wi
   return mul(base, glossy2_absorption(p, wo.z, wi.z));
 }
 
-/// Probability of sampling the coat's first reflection: the coat's share of what is reflected, as
-/// seen from wo, without what comes back after several reflections. That is sampled as the base is.
-DS_FN real glossy2_lobe_probability(const real* p, Coat c, real3 passed, real3 wo) {
-  const real through = luminance(passed);
-  const real coat = 1.0f - through;
-  const real sum = fma(luminance(input3(p, glossy2_kd)), through, coat);
-  const real share = choose(
-      sum > 0.0f, greater(coat, (real)(1e-10f)) / greater(sum, (real)(1e-10f)), (real)(0.5f));
-  return clamp01(share) * (1.0f - rescattered_share(c.again, wo.z));
-}
-
-/// All lobes at wi, which is above the surface; `first` is the probability above.
-DS_INLINED BsdfValue glossy2_all(const real* p, Coat c, real3 passed, real first, real3 wo,
-                                 real3 wi) {
+/// All lobes at wi, which is above the surface.
+DS_INLINED BsdfValue glossy2_all(const real* p, Coat c, real3 wo, real3 wi) {
   const real3 h = half_vector(wo, wi);
   const Lobe lobe = ggx_lobe(c.roughness, wo, wi, h);
   BsdfValue v;
-  v.value = add_scaled(glossy2_base(p, c, passed, wo, wi), schlick_fresnel(c.ks, dot(wo, h)),
-                       lobe.specular);
+  v.value =
+      add_scaled(glossy2_base(p, c, wo, wi), schlick_fresnel(c.ks, dot(wo, h)), lobe.specular);
   v.value = add_scaled(v.value, c.again_fresnel, rescattered(c.again, wo, wi));
-  v.pdf = first * lobe.pdf + (1.0f - first) * wi.z * DS_INV_PI;
+  v.pdf = c.first * lobe.pdf + (1.0f - c.first) * wi.z * DS_INV_PI;
   return v;
 }
 
 DS_FN BsdfValue glossy2_evaluate(const real* p, Viewer viewer, real3 wi) {
-  const Coat c = glossy2_coat(p);
-  const real3 passed = glossy2_passed(c, viewer.wo.z);
-  const real first = glossy2_lobe_probability(p, c, passed, viewer.wo);
   const mask above = wi.z > 0.0f;
-  BsdfValue v = glossy2_all(p, c, passed, first, viewer.wo, choose(above, wi, viewer.wo));
+  BsdfValue v = glossy2_all(p, glossy2_coat(p), viewer.wo, choose(above, wi, viewer.wo));
   v.value = choose(above, v.value, splat((real)(0.0f)));
   v.pdf = choose(above, v.pdf, (real)(0.0f));
   return v;
@@ -142,14 +176,12 @@ DS_FN BsdfValue glossy2_evaluate(const real* p, Viewer viewer, real3 wi) {
 
 DS_FN BsdfSample glossy2_sample(const real* p, Viewer viewer, real2 u, real2 lobe) {
   const Coat c = glossy2_coat(p);
-  const real3 passed = glossy2_passed(c, viewer.wo.z);
-  const real first = glossy2_lobe_probability(p, c, passed, viewer.wo);
   BsdfSample s = no_sample();
-  s.glossy = lobe.x < first;
+  s.glossy = lobe.x < c.first;
   const real3 mirrored = reflect_about(viewer.wo, ggx_visible_normal(c.roughness, viewer.wo, u));
   s.wi = choose(s.glossy, mirrored, cosine_hemisphere(u));
   s.valid = s.wi.z > 0.0f;
-  const BsdfValue v = glossy2_all(p, c, passed, first, viewer.wo, choose(s.valid, s.wi, viewer.wo));
+  const BsdfValue v = glossy2_all(p, c, viewer.wo, choose(s.valid, s.wi, viewer.wo));
   s.pdf = v.pdf;
   s.weight = scale(v.value, 1.0f / greater(v.pdf, (real)(1e-20f)));
   return s;

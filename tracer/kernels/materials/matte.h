@@ -6,7 +6,9 @@
 
 #define DS_MATTE_INPUTS(INPUT) INPUT(matte_kd, 3, 0.75f)
 #define DS_MATTE_NUMBERS(NUMBER)
-enum { DS_MATTE_INPUTS(DS_SLOT) matte_end };
+enum { DS_MATTE_INPUTS(DS_SLOT) matte_end, matte_derived = 0 };
+
+DS_FN void matte_prepare(const real* p, Viewer viewer, real* derived) {}
 
 DS_FN BsdfValue matte_evaluate(const real* p, Viewer viewer, real3 wi) {
   BsdfValue v;

@@ -14,6 +14,15 @@
   INPUT(metal2_vroughness, 1, 0.1f)
 #define DS_METAL2_NUMBERS(NUMBER)
 enum { DS_METAL2_INPUTS(DS_SLOT) metal2_end };
+/// What is derived; see Rescattering.
+enum {
+  metal2_alpha,
+  metal2_share,
+  metal2_mean,
+  metal2_again_fresnel,  ///< 3: Fresnel's part in what comes back after several reflections
+  metal2_again = metal2_again_fresnel + 3,  ///< probability of sampling that
+  metal2_derived
+};
 
 DS_FN real3 metal2_fresnel(const real* p, real cosine) {
   const real c = clamp01(cosine);
@@ -28,20 +37,35 @@ DS_FN real3 metal2_average_fresnel(const real* p) {
                (real)(0.636082763f));
 }
 
+DS_FN void metal2_prepare(const real* p, Viewer viewer, real* derived) {
+  const Rescattering m = ggx_rescattering(roughness_of(p[metal2_uroughness], p[metal2_vroughness]));
+  derived[metal2_alpha] = m.alpha;
+  derived[metal2_share] = m.share;
+  derived[metal2_mean] = m.mean;
+  put3(derived, metal2_again_fresnel, splat((real)(0.0f)));
+  derived[metal2_again] = (real)(0.0f);
+  if (!any_lane(m.share > 0.0f)) return;
+  const real3 average = metal2_average_fresnel(p);
+  put3(derived, metal2_again_fresnel,
+       vec(rescattered_fresnel(m, average.x), rescattered_fresnel(m, average.y),
+           rescattered_fresnel(m, average.z)));
+  derived[metal2_again] = rescattered_share(m, viewer.wo.z);
+}
+
 /// Both lobes at wi, which is above the surface; h is their half vector.
 DS_INLINED BsdfValue metal2_both(const real* p, real3 wo, real3 wi, real3 h) {
-  const Roughness r = roughness_of(p[metal2_uroughness], p[metal2_vroughness]);
-  const Rescattering m = ggx_rescattering(r);
-  const Lobe lobe = ggx_lobe(r, wo, wi, h);
+  const real* derived = p + metal2_end;
+  const Lobe lobe = ggx_lobe(roughness_of(p[metal2_uroughness], p[metal2_vroughness]), wo, wi, h);
   BsdfValue v;
   v.value = scale(metal2_fresnel(p, dot(wo, h)), lobe.specular);
   v.pdf = lobe.pdf;
+  Rescattering m;
+  m.alpha = derived[metal2_alpha];
+  m.share = derived[metal2_share];
+  m.mean = derived[metal2_mean];
   if (!any_lane(m.share > 0.0f)) return v;
-  const real3 average = metal2_average_fresnel(p);
-  const real3 fresnel = vec(rescattered_fresnel(m, average.x), rescattered_fresnel(m, average.y),
-                            rescattered_fresnel(m, average.z));
-  v.value = add_scaled(v.value, fresnel, rescattered(m, wo, wi));
-  const real again = rescattered_share(m, wo.z);
+  v.value = add_scaled(v.value, input3(derived, metal2_again_fresnel), rescattered(m, wo, wi));
+  const real again = derived[metal2_again];
   v.pdf = (1.0f - again) * lobe.pdf + again * wi.z * DS_INV_PI;
   return v;
 }
@@ -57,7 +81,7 @@ DS_FN BsdfValue metal2_evaluate(const real* p, Viewer viewer, real3 wi) {
 
 DS_FN BsdfSample metal2_sample(const real* p, Viewer viewer, real2 u, real2 lobe) {
   const Roughness r = roughness_of(p[metal2_uroughness], p[metal2_vroughness]);
-  const mask again = lobe.x < rescattered_share(ggx_rescattering(r), viewer.wo.z);
+  const mask again = lobe.x < (p + metal2_end)[metal2_again];
   const real3 normal = ggx_visible_normal(r, viewer.wo, u);
   BsdfSample s = no_sample();
   s.wi = choose(again, cosine_hemisphere(u), reflect_about(viewer.wo, normal));

@@ -6,7 +6,9 @@
 
 #define DS_MIRROR_INPUTS(INPUT) INPUT(mirror_kr, 3, 1.0f)
 #define DS_MIRROR_NUMBERS(NUMBER)
-enum { DS_MIRROR_INPUTS(DS_SLOT) mirror_end };
+enum { DS_MIRROR_INPUTS(DS_SLOT) mirror_end, mirror_derived = 0 };
+
+DS_FN void mirror_prepare(const real* p, Viewer viewer, real* derived) {}
 
 DS_FN BsdfValue mirror_evaluate(const real* p, Viewer viewer, real3 wi) {
   return no_value();

@@ -7,4 +7,6 @@
 
 #define DS_MIX_INPUTS(INPUT) INPUT(mix_amount, 1, 0.5f)
 #define DS_MIX_NUMBERS(NUMBER)
-enum { DS_MIX_INPUTS(DS_SLOT) mix_end };
+enum { DS_MIX_INPUTS(DS_SLOT) mix_end, mix_derived = 0 };
+
+DS_FN void mix_prepare(const real* p, Viewer viewer, real* derived) {}
