@@ -4,9 +4,9 @@
 //
 //   effects_bench ASSETS MODEL SIZE SPP REPEATS
 //
-// For every shipped environment with every shipped material, the specialised and the full program
-// take turns on a picture of SIZE x SIZE pixels. Then every distinct program is compiled from its
-// source. Answers
+// Every distinct program is compiled from its source. Then for every shipped environment with every
+// shipped material the specialised and the full program take turns on a picture of SIZE x SIZE
+// pixels. Answers
 //   {"pairs": [{"environment", "material", "specialised": times, "full": times, "equal": bool}],
 //    "compile": [{"pairs": [names], times}], the last the full program, "compiler_start": times}
 // where times are {"seconds": [s], "cpu_seconds": [s, of all threads]}.
@@ -108,8 +108,8 @@ json measure_pair(const Pair& pair, Tracer& specialised, Tracer& full, EngineSet
   return result;
 }
 
-/// `compiler_start` is what an empty program takes in a device's first build: PoCL reads its
-/// library of built-in functions once for each process.
+/// Before anything else is compiled: `compiler_start` is what an empty program takes as the first
+/// one of a process, in which PoCL reads its library of built-in functions.
 void measure_compiling(const std::vector<Pair>& pairs, int repeats, json& result) {
   std::map<std::string, std::vector<std::string>> programs;  // names of pairs by program text
   for (const Pair& pair : pairs)
@@ -147,15 +147,15 @@ void measure(int count, char** arguments) {
   EngineSettings engine;
   engine.width = engine.height = whole_number(arguments[3]);
   engine.spp = whole_number(arguments[4]);
+  json result{{"pairs", json::array()}};
+  measure_compiling(pairs, whole_number(arguments[5]), result);
   TracerOptions options;
   Tracer specialised(options);
   options.full_program = true;
   Tracer full(options);
-  json result{{"pairs", json::array()}};
   for (const Pair& pair : pairs)
     result["pairs"].push_back(
         measure_pair(pair, specialised, full, engine, whole_number(arguments[5])));
-  measure_compiling(pairs, whole_number(arguments[5]), result);
   fmt::print("{}\n", result.dump());
 }
 

@@ -3,11 +3,18 @@
 #pragma once
 
 #include "tracer/kernels/all_nodes.h"
+#include "tracer/kernels/lists.h"
 
 #include <vector>
 
 namespace ds::DS_KERNELS {
 
+#define DS_FITS(sdl_name, prefix, PREFIX) \
+  static_assert(int{prefix##_derived} <= int{k_most_derived});
+DS_ALL_MATERIALS(DS_FITS)
+#undef DS_FITS
+
+/// Must outlive what is done with `data`.
 class Prepared {
  public:
   /// `count` inputs, then `derived` numbers by `prepare`; without any, `p` itself.

@@ -74,7 +74,8 @@ DS_FN natural resolve_mix(MaterialTables t, natural material, mask active, const
 }
 #endif
 
-/// Lets the materials derive what all questions of this viewer share.
+/// Lets the materials derive what all questions of this viewer share. Lanes of other materials
+/// keep their inputs, and zeros behind them.
 DS_FN void prepare_material(MaterialPoint* m, Viewer viewer) {
   for (int i = 0; i < k_most_derived; ++i)
     m->inputs[DS_MATERIAL_INPUTS + i] = (real)(0.0f);

@@ -27,16 +27,16 @@
   NUMBER(glossy2_multibounce, 0.0f) \
   NUMBER(glossy2_doublesided, 0.0f)
 enum { DS_GLOSSY2_INPUTS(DS_SLOT) glossy2_end };
-/// What is derived; see Coat.
+/// What is derived: the parts of a Coat, then what the coat does to light for the viewer.
 enum {
   glossy2_alpha,
   glossy2_share,
   glossy2_mean,
   glossy2_at_normal,                             ///< 3
   glossy2_again = glossy2_at_normal + 3,         ///< 3
-  glossy2_passed_out = glossy2_again + 3,        ///< 3
-  glossy2_passed_mean = glossy2_passed_out + 3,  ///< 3
-  glossy2_first = glossy2_passed_mean + 3,
+  glossy2_passed_out = glossy2_again + 3,        ///< 3: 1 - C(o)
+  glossy2_passed_mean = glossy2_passed_out + 3,  ///< 3: 1 - mean C
+  glossy2_first = glossy2_passed_mean + 3,  ///< probability of sampling the coat's first reflection
   glossy2_derived
 };
 
@@ -54,15 +54,12 @@ DS_OUT_OF_LINE real3 glossy2_absorption(const real* p, real cos_o, real cos_i) {
   return vec(exponential(-ka.x * path), exponential(-ka.y * path), exponential(-ka.z * path));
 }
 
-/// What does not depend on the direction asked for.
+/// The coat's facets, its reflectance at normal incidence, and Fresnel's part in what comes back
+/// after several reflections.
 typedef struct {
   Roughness roughness;
-  Rescattering again;   ///< several reflections among the coat's facets
-  real3 ks;             ///< reflectance at normal incidence
-  real3 again_fresnel;  ///< Fresnel's part in what comes back after several reflections
-  real3 passed;         ///< by the coat on the way to the viewer: 1 - C
-  real3 mean_passed;    ///< 1 - mean C
-  real first;           ///< probability of sampling the coat's first reflection
+  Rescattering again;
+  real3 ks, again_fresnel;
 } Coat;
 
 /// Schlick's mean over the cosine-weighted hemisphere: the integral of 2 c (1 - c)^5 is 1/21.
@@ -98,8 +95,8 @@ DS_FN real3 glossy2_mean_passed(Coat c) {
 
 /// Probability of sampling the coat's first reflection: the coat's share of what is reflected, as
 /// seen from wo, without what comes back after several reflections. That is sampled as the base is.
-DS_FN real glossy2_lobe_probability(const real* p, Coat c, real3 wo) {
-  const real through = luminance(c.passed);
+DS_FN real glossy2_lobe_probability(const real* p, Coat c, real3 passed, real3 wo) {
+  const real through = luminance(passed);
   const real coat = 1.0f - through;
   const real sum = fma(luminance(input3(p, glossy2_kd)), through, coat);
   const real share = choose(
@@ -115,15 +112,15 @@ DS_FN void glossy2_prepare(const real* p, Viewer viewer, real* derived) {
   c.again_fresnel =
       vec(glossy2_again_fresnel(c.again, c.ks.x), glossy2_again_fresnel(c.again, c.ks.y),
           glossy2_again_fresnel(c.again, c.ks.z));
-  c.passed = glossy2_passed(c, viewer.wo.z);
+  const real3 passed = glossy2_passed(c, viewer.wo.z);
   derived[glossy2_alpha] = c.again.alpha;
   derived[glossy2_share] = c.again.share;
   derived[glossy2_mean] = c.again.mean;
   put3(derived, glossy2_at_normal, c.ks);
   put3(derived, glossy2_again, c.again_fresnel);
-  put3(derived, glossy2_passed_out, c.passed);
+  put3(derived, glossy2_passed_out, passed);
   put3(derived, glossy2_passed_mean, glossy2_mean_passed(c));
-  derived[glossy2_first] = glossy2_lobe_probability(p, c, viewer.wo);
+  derived[glossy2_first] = glossy2_lobe_probability(p, c, passed, viewer.wo);
 }
 
 DS_FN Coat glossy2_coat(const real* p) {
@@ -135,16 +132,14 @@ DS_FN Coat glossy2_coat(const real* p) {
   c.again.mean = derived[glossy2_mean];
   c.ks = input3(derived, glossy2_at_normal);
   c.again_fresnel = input3(derived, glossy2_again);
-  c.passed = input3(derived, glossy2_passed_out);
-  c.mean_passed = input3(derived, glossy2_passed_mean);
-  c.first = derived[glossy2_first];
   return c;
 }
 
 /// Base times cosine of wi.
 DS_FN real3 glossy2_base(const real* p, Coat c, real3 wo, real3 wi) {
-  const real3 mean = c.mean_passed;
-  const real3 coupled = mul(c.passed, glossy2_passed(c, wi.z));
+  const real* derived = p + glossy2_end;
+  const real3 mean = input3(derived, glossy2_passed_mean);
+  const real3 coupled = mul(input3(derived, glossy2_passed_out), glossy2_passed(c, wi.z));
   // A coat that lets nothing through has nothing under it: 0 / 1e-6.
   const real3 through =
       vec(coupled.x / greater(mean.x, (real)(1e-6f)), coupled.y / greater(mean.y, (real)(1e-6f)),
@@ -162,7 +157,8 @@ DS_INLINED BsdfValue glossy2_all(const real* p, Coat c, real3 wo, real3 wi) {
   v.value =
       add_scaled(glossy2_base(p, c, wo, wi), schlick_fresnel(c.ks, dot(wo, h)), lobe.specular);
   v.value = add_scaled(v.value, c.again_fresnel, rescattered(c.again, wo, wi));
-  v.pdf = c.first * lobe.pdf + (1.0f - c.first) * wi.z * DS_INV_PI;
+  const real first = (p + glossy2_end)[glossy2_first];
+  v.pdf = first * lobe.pdf + (1.0f - first) * wi.z * DS_INV_PI;
   return v;
 }
 
@@ -177,7 +173,7 @@ DS_FN BsdfValue glossy2_evaluate(const real* p, Viewer viewer, real3 wi) {
 DS_FN BsdfSample glossy2_sample(const real* p, Viewer viewer, real2 u, real2 lobe) {
   const Coat c = glossy2_coat(p);
   BsdfSample s = no_sample();
-  s.glossy = lobe.x < c.first;
+  s.glossy = lobe.x < (p + glossy2_end)[glossy2_first];
   const real3 mirrored = reflect_about(viewer.wo, ggx_visible_normal(c.roughness, viewer.wo, u));
   s.wi = choose(s.glossy, mirrored, cosine_hemisphere(u));
   s.valid = s.wi.z > 0.0f;
