@@ -14,13 +14,21 @@
 
 namespace ds {
 
+/// Whether a file whose stamp is known is taken for the one that was read before.
+enum class Stamps {
+  trust,
+  ignore,  ///< every file is read: a disk's or a file system's fault leaves the stamp as it was
+};
+
 /// The files a recipe names, each read once. What was hashed before is known by its stamp (size,
-/// time, inode), so that looking at thousands of unchanged models reads none of them. A file that
+/// times, inode), so that looking at thousands of unchanged models reads none of them. A file that
 /// cannot be read fails the same way each time it is asked for.
 class Inputs {
  public:
   /// The database must outlive this.
-  explicit Inputs(Database& database) : database_(database) {}
+  explicit Inputs(Database& database, Stamps stamps = Stamps::trust)
+      : database_(database), stamps_(stamps) {}
+  Stamps stamps() const { return stamps_; }
 
   /// geometry_hash of the model as read, before normalisation. Throws what `read_model` throws.
   Hash128 model_geometry(const std::filesystem::path& file) { return model(file).geometry; }
@@ -55,6 +63,7 @@ class Inputs {
   };
 
   Database& database_;
+  Stamps stamps_;
   std::map<std::filesystem::path, Read<KnownModel>> models_;
   std::map<std::filesystem::path, Read<Scene>> materials_, environments_;
   std::vector<NewModel> new_models_;

@@ -15,8 +15,10 @@ namespace ds {
 class PlacedFiles {
  public:
   /// The dataset must outlive it.
-  explicit PlacedFiles(Dataset& dataset)
-      : dataset_(dataset), placed_(dataset.database->placed_files(dataset.row.id)) {}
+  explicit PlacedFiles(Dataset& dataset, Stamps stamps = Stamps::trust)
+      : dataset_(dataset),
+        stamps_(stamps),
+        placed_(dataset.database->placed_files(dataset.row.id)) {}
 
   /// Empty where the file is there and what its key says, else why it is not. Reads a file whose
   /// stamp is not the one remembered. Throws Error(io).
@@ -30,6 +32,7 @@ class PlacedFiles {
 
  private:
   Dataset& dataset_;
+  Stamps stamps_;
   std::map<std::string, PlacedFile> placed_;
   std::vector<PlacedFile> restamped_;
 };

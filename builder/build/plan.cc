@@ -14,13 +14,13 @@ constexpr std::size_t k_most_changes = 4;
 
 class Planner {
  public:
-  Planner(Dataset& dataset, TextSet& texts, bool force)
+  Planner(Dataset& dataset, TextSet& texts, bool force, Stamps stamps)
       : dataset_(dataset),
         database_(*dataset.database),
         texts_(texts),
         force_(force),
         known_(database_.images(dataset.row.id)),
-        placed_(dataset) {}
+        placed_(dataset, stamps) {}
 
   void plan(PlannedImage& image);
   PlacedFiles& placed() { return placed_; }
@@ -126,7 +126,7 @@ std::uint64_t PlannedImage::samples() const {
 Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
   Plan plan;
   KeyMaker keys(dataset.recipe, inputs, plan.texts);
-  Planner planner(dataset, plan.texts, force);
+  Planner planner(dataset, plan.texts, force, inputs.stamps());
   for (ImageSpec& spec : expand(dataset.recipe)) {
     PlannedImage image;
     image.elsewhere = !shard.holds(spec.id);

@@ -28,6 +28,7 @@ struct Arguments {
   std::string budget;
   bool json = false, dry_run = false, keep_going = false, force = false, explain = false;
   bool effects = false;
+  bool rehash = false;
 
   DatasetRequest request() const { return {target, overrides, output_folder, store_folder}; }
 };
@@ -44,6 +45,7 @@ enum class Option {
   dry_run,
   keep_going,
   force,
+  rehash,
   explain,
   shard,
   effects,

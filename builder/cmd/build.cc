@@ -103,7 +103,7 @@ int run_build(const Arguments& arguments) {
   RealDisk disk;
   Dataset dataset =
       open_dataset(arguments.request(), arguments.dry_run ? Access::look : Access::build, disk);
-  Inputs inputs(*dataset.database);
+  Inputs inputs(*dataset.database, stamps_of(arguments));
   const Plan plan = make_plan(dataset, inputs, arguments.force, shard);
   warn_of_mended(plan);
   if (arguments.dry_run) return dry_run(arguments, plan);

@@ -61,6 +61,10 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
     case Option::force:
       verb.add_flag("--force", to.force, "trace every image again");
       return;
+    case Option::rehash:
+      verb.add_flag("--rehash", to.rehash,
+                    "read every model and output, also where size, times and inode are as before");
+      return;
     case Option::explain:
       verb.add_flag("--explain", to.explain, "say why each image is made");
       return;

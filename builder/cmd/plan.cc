@@ -163,7 +163,7 @@ int run_plan(const Arguments& arguments) {
     fail(ErrorKind::usage,
          "{} is of pictures, and with outputs.image = false the recipe makes none; ask --time",
          wish.error ? "--error" : "--budget");
-  Inputs inputs(*dataset.database);
+  Inputs inputs(*dataset.database, stamps_of(arguments));
   const Plan plan = make_plan(dataset, inputs, wish.all_images());
   const PlanCounts counts = count(plan);
   nlohmann::json object = arguments.json ? plan_json(plan, counts) : nlohmann::json();

@@ -9,6 +9,10 @@
 
 namespace ds {
 
+Stamps stamps_of(const Arguments& arguments) {
+  return arguments.rehash ? Stamps::ignore : Stamps::trust;
+}
+
 const char* step_of(const PlannedImage& image) {
   if (!image.stale()) return "";
   if (image.trace_film || image.trace_geometry) return "trace";

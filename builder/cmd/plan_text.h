@@ -2,6 +2,7 @@
 #pragma once
 
 #include "builder/build/plan.h"
+#include "builder/cmd/arguments.h"
 
 #include <nlohmann/json.hpp>
 
@@ -9,6 +10,9 @@
 #include <string>
 
 namespace ds {
+
+/// What --rehash says.
+Stamps stamps_of(const Arguments& arguments);
 
 /// A plan in numbers, of the shard's images.
 struct PlanCounts {

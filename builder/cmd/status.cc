@@ -11,7 +11,7 @@ namespace ds {
 int run_status(const Arguments& arguments) {
   RealDisk disk;
   Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
-  Inputs inputs(*dataset.database);
+  Inputs inputs(*dataset.database, stamps_of(arguments));
   const PlanCounts counts = count(make_plan(dataset, inputs, false));
   const std::vector<BuildRow> builds = dataset.database->builds(dataset.row.id);
   const std::string store = dataset.store ? dataset.store->folder().string() : "";

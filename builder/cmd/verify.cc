@@ -20,7 +20,8 @@ bool is_bare_folder(const Arguments& arguments) {
 void verify_dataset(VerifyResult& result, const Arguments& arguments) {
   RealDisk disk;
   Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
-  Inputs inputs(*dataset.database);
+  // Bytes are looked at, of outputs and inputs alike: stamps are what the other verbs go by.
+  Inputs inputs(*dataset.database, Stamps::ignore);
   const Plan plan = make_plan(dataset, inputs, false);
   verify_against_plan(result, dataset, plan);
   if (arguments.rerender == 0) return;

@@ -65,23 +65,25 @@ std::optional<Hash128> Database::find_content(const std::filesystem::path& file,
                                               const FileStamp& stamp) {
   Statement row = connection_.prepare(
       "SELECT content FROM input_file WHERE path = ?1 AND size_bytes = ?2 AND mtime_ns = ?3 AND "
-      "inode = ?4");
+      "inode = ?4 AND ctime_ns = ?5");
   row.bind(1, file.string())
       .bind_count(2, stamp.size_bytes)
       .bind(3, stamp.mtime_ns)
-      .bind_count(4, stamp.inode);
+      .bind_count(4, stamp.inode)
+      .bind(5, stamp.ctime_ns);
   if (!row.step()) return std::nullopt;
   return hash_column(row, 0);
 }
 
 void Database::put_content(const std::filesystem::path& file, const FileStamp& stamp,
                            Hash128 content) {
-  connection_.prepare("INSERT OR REPLACE INTO input_file VALUES (?1, ?2, ?3, ?4, ?5)")
+  connection_.prepare("INSERT OR REPLACE INTO input_file VALUES (?1, ?2, ?3, ?4, ?5, ?6)")
       .bind(1, file.string())
       .bind_count(2, stamp.size_bytes)
       .bind(3, stamp.mtime_ns)
       .bind_count(4, stamp.inode)
       .bind(5, content.hex())
+      .bind(6, stamp.ctime_ns)
       .run();
 }
 
@@ -204,13 +206,15 @@ void Database::remove_image(const std::string& dataset, const std::string& image
 std::map<std::string, PlacedFile> Database::placed_files(const std::string& dataset) {
   std::map<std::string, PlacedFile> files;
   Statement row = connection_.prepare(
-      "SELECT path, image, kind, product, object, size_bytes, mtime_ns, inode FROM placed WHERE "
-      "dataset = ?1");
+      "SELECT path, image, kind, product, object, size_bytes, mtime_ns, inode, ctime_ns FROM "
+      "placed "
+      "WHERE dataset = ?1");
   row.bind(1, dataset);
   while (row.step()) {
     PlacedFile file{row.text(0),         row.text(1),         row.text(2),
                     hash_column(row, 3), hash_column(row, 4), std::nullopt};
-    if (row.integer(7) != 0) file.stamp = FileStamp{row.count(5), row.integer(6), row.count(7)};
+    if (row.integer(7) != 0)
+      file.stamp = FileStamp{row.count(5), row.integer(6), row.integer(8), row.count(7)};
     files.emplace(file.path, std::move(file));
   }
   return files;
@@ -218,7 +222,8 @@ std::map<std::string, PlacedFile> Database::placed_files(const std::string& data
 
 void Database::put_placed(const std::string& dataset, const PlacedFile& file) {
   const FileStamp stamp = file.stamp.value_or(FileStamp{});
-  connection_.prepare("INSERT OR REPLACE INTO placed VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)")
+  connection_
+      .prepare("INSERT OR REPLACE INTO placed VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)")
       .bind(1, dataset)
       .bind(2, file.path)
       .bind(3, file.image)
@@ -228,6 +233,7 @@ void Database::put_placed(const std::string& dataset, const PlacedFile& file) {
       .bind_count(7, stamp.size_bytes)
       .bind(8, stamp.mtime_ns)
       .bind_count(9, stamp.inode)
+      .bind(10, stamp.ctime_ns)
       .run();
 }
 

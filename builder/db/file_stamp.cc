@@ -12,6 +12,12 @@ namespace ds {
 namespace {
 
 constexpr std::int64_t k_ns_per_s = 1'000'000'000;
+/// The slowest tick of a file system in use is FAT's, two seconds.
+constexpr std::int64_t k_racy_ns = 5 * k_ns_per_s / 2;
+
+std::int64_t ns_of(const timespec& time) {
+  return std::int64_t{time.tv_sec} * k_ns_per_s + time.tv_nsec;
+}
 
 }  // namespace
 
@@ -23,15 +29,17 @@ std::optional<FileStamp> stamp_of(const std::filesystem::path& file) {
          std::generic_category().message(errno));
   }
   if (!S_ISREG(status.st_mode)) return std::nullopt;
-  return FileStamp{static_cast<std::uint64_t>(status.st_size),
-                   std::int64_t{status.st_mtim.tv_sec} * k_ns_per_s + status.st_mtim.tv_nsec,
-                   std::uint64_t{status.st_ino}};
+  return FileStamp{static_cast<std::uint64_t>(status.st_size), ns_of(status.st_mtim),
+                   ns_of(status.st_ctim), std::uint64_t{status.st_ino}};
 }
 
 bool is_racy(const FileStamp& stamp) {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   const std::int64_t now_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
-  return stamp.mtime_ns > now_ns - k_ns_per_s;
+  // mtime counts too, for file systems whose ctime is that of creation (FAT before Linux 5.18),
+  // unless it was set to a time to come.
+  const bool written_now = stamp.mtime_ns > now_ns - k_racy_ns && stamp.mtime_ns <= now_ns;
+  return written_now || stamp.ctime_ns > now_ns - k_racy_ns;
 }
 
 }  // namespace ds

@@ -13,7 +13,8 @@ CREATE TABLE text (
 CREATE TABLE input_file (
   path TEXT PRIMARY KEY,
   size_bytes INTEGER NOT NULL, mtime_ns INTEGER NOT NULL, inode INTEGER NOT NULL,
-  content TEXT NOT NULL
+  content TEXT NOT NULL,
+  ctime_ns INTEGER NOT NULL DEFAULT 0
 ) WITHOUT ROWID;
 CREATE TABLE geometry (
   content TEXT NOT NULL, reader INTEGER NOT NULL,
@@ -55,6 +56,7 @@ CREATE TABLE placed (
   product TEXT NOT NULL, object TEXT NOT NULL,
   size_bytes INTEGER NOT NULL, mtime_ns INTEGER NOT NULL,
   inode INTEGER NOT NULL,     -- 0: the file was not seen whole since it was recorded
+  ctime_ns INTEGER NOT NULL DEFAULT 0,
   PRIMARY KEY (dataset, path)
 ) WITHOUT ROWID;
 CREATE TABLE build (
@@ -67,9 +69,9 @@ CREATE TABLE build (
   seconds REAL NOT NULL
 );
 CREATE INDEX build_dataset ON build (dataset);
-PRAGMA user_version = 3;
+PRAGMA user_version = 4;
 )sql";
-static_assert(k_schema_version == 3, "the last line of k_tables states the version too");
+static_assert(k_schema_version == 4, "the last line of k_tables states the version too");
 
 /// From version 1 to 2.
 constexpr const char* k_add_facts = R"sql(
@@ -80,7 +82,13 @@ ALTER TABLE product ADD COLUMN facts TEXT NOT NULL DEFAULT '';
 constexpr const char* k_add_damage = R"sql(
 DELETE FROM geometry;
 ALTER TABLE geometry ADD COLUMN damage TEXT NOT NULL DEFAULT '[]';
-PRAGMA user_version = 3;
+)sql";
+
+/// From version 3 to 4.
+constexpr const char* k_add_ctime = R"sql(
+ALTER TABLE input_file ADD COLUMN ctime_ns INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE placed ADD COLUMN ctime_ns INTEGER NOT NULL DEFAULT 0;
+PRAGMA user_version = 4;
 )sql";
 
 std::int64_t user_version(Connection& connection) {
@@ -106,8 +114,9 @@ void prepare_schema(Connection& connection, const std::string& name) {
     fail(ErrorKind::io, "{}: wanted a database of version {}, found {}: made by a newer dsbuild",
          name, k_schema_version, version);
   if (version > 0) {
-    if (version == 1) connection.execute(k_add_facts);
-    connection.execute(k_add_damage);
+    if (version < 2) connection.execute(k_add_facts);
+    if (version < 3) connection.execute(k_add_damage);
+    connection.execute(k_add_ctime);
     transaction.commit();
     return;
   }

@@ -9,9 +9,11 @@ namespace ds {
 ///   1: first
 ///   2: product.facts; '' in rows of version 1, whose films' facts were not kept
 ///   3: geometry.damage; rows of older versions are dropped, and their models read once more
+///   4: ctime_ns in input_file and placed; 0, which no file has, in rows of older versions, so that
+///      their files are read once more
 /// An older file is converted when it is opened; a newer one is refused, since writing to it could
 /// lose what this program does not know.
-inline constexpr int k_schema_version = 3;
+inline constexpr int k_schema_version = 4;
 
 /// Makes the tables where the file is new. Throws Error(io) for a file of a newer version,
 /// DamagedDatabase for one that is some other program's.

@@ -6,6 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <fstream>
+#include <thread>
+
 namespace ds {
 namespace {
 
@@ -36,13 +40,14 @@ TEST(Database, RemembersAProductAndReplacesIt) {
 
 TEST(Database, KnowsAFileByEveryPartOfItsStamp) {
   Database database({});
-  const FileStamp stamp{10, 20, 30};
+  const FileStamp stamp{10, 20, 25, 30};
   database.put_content("/a/file", stamp, k_a);
   EXPECT_EQ(database.find_content("/a/file", stamp), k_a);
   EXPECT_FALSE(database.find_content("/a/other", stamp));
-  EXPECT_FALSE(database.find_content("/a/file", {11, 20, 30}));
-  EXPECT_FALSE(database.find_content("/a/file", {10, 21, 30}));
-  EXPECT_FALSE(database.find_content("/a/file", {10, 20, 31}));
+  EXPECT_FALSE(database.find_content("/a/file", {11, 20, 25, 30}));
+  EXPECT_FALSE(database.find_content("/a/file", {10, 21, 25, 30}));
+  EXPECT_FALSE(database.find_content("/a/file", {10, 20, 26, 30}));
+  EXPECT_FALSE(database.find_content("/a/file", {10, 20, 25, 31}));
 }
 
 TEST(Database, KeepsModelsByTheVersionOfTheirReader) {
@@ -62,13 +67,13 @@ TEST(Database, KeepsDatasetsApart) {
   PartHashes parts{};
   parts[4] = k_b;
   database.put_image("one", "a/0", parts);
-  database.put_placed("one", {"images/a/0.png", "a/0", "image", k_a, k_b, FileStamp{1, 2, 3}});
+  database.put_placed("one", {"images/a/0.png", "a/0", "image", k_a, k_b, FileStamp{1, 2, 4, 3}});
   database.put_placed("one", {"images/a/0.mask.png", "a/0", "mask", k_a, k_b, std::nullopt});
   EXPECT_TRUE(database.images("two").empty());
   EXPECT_TRUE(database.placed_files("two").empty());
   EXPECT_EQ(database.images("one").at("a/0"), parts);
   const auto placed = database.placed_files("one");
-  EXPECT_EQ(placed.at("images/a/0.png").stamp, (FileStamp{1, 2, 3}));
+  EXPECT_EQ(placed.at("images/a/0.png").stamp, (FileStamp{1, 2, 4, 3}));
   EXPECT_EQ(placed.at("images/a/0.mask.png").stamp, std::nullopt);
   database.remove_placed("one", "images/a/0.png");
   database.remove_image("one", "a/0");
@@ -121,7 +126,9 @@ TEST(Database, ReadsAFileOfVersionOne) {
     Connection connection(file);
     connection.execute(
         "ALTER TABLE product DROP COLUMN facts; "
-        "ALTER TABLE geometry DROP COLUMN damage; PRAGMA user_version = 1");
+        "ALTER TABLE geometry DROP COLUMN damage; "
+        "ALTER TABLE input_file DROP COLUMN ctime_ns; "
+        "ALTER TABLE placed DROP COLUMN ctime_ns; PRAGMA user_version = 1");
   }
   for (int opened = 0; opened < 2; ++opened) {
     Database database(file);
@@ -142,12 +149,34 @@ TEST(Database, ForgetsModelsOfVersionTwoWhoseDamageIsNotKnown) {
     database.put_product(product, {});
     database.put_model(k_a, 1, {k_b, {}});
   }
-  Connection(file).execute("ALTER TABLE geometry DROP COLUMN damage; PRAGMA user_version = 2");
+  Connection(file).execute(
+      "ALTER TABLE geometry DROP COLUMN damage; "
+      "ALTER TABLE input_file DROP COLUMN ctime_ns; "
+      "ALTER TABLE placed DROP COLUMN ctime_ns; PRAGMA user_version = 2");
   Database database(file);
   EXPECT_FALSE(database.find_model(k_a, 1));
   EXPECT_TRUE(database.find_product(k_a));
   database.put_model(k_a, 1, {k_b, {{"non_finite", 1}}});
   EXPECT_EQ(database.find_model(k_a, 1)->damage, (MendedDamage{{"non_finite", 1}}));
+}
+
+TEST(Database, TrustsNoStampOfVersionThreeWhichHadNoCtime) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "db.sqlite";
+  const FileStamp stamp{10, 20, 25, 30};
+  {
+    Database database(file);
+    database.put_content("/a/file", stamp, k_a);
+    database.put_placed("one", {"images/a/0.png", "a/0", "image", k_a, k_b, stamp});
+  }
+  Connection(file).execute(
+      "ALTER TABLE input_file DROP COLUMN ctime_ns; "
+      "ALTER TABLE placed DROP COLUMN ctime_ns; PRAGMA user_version = 3");
+  Database database(file);
+  EXPECT_FALSE(database.find_content("/a/file", stamp));
+  EXPECT_NE(database.placed_files("one").at("images/a/0.png").stamp, stamp);
+  database.put_content("/a/file", stamp, k_b);
+  EXPECT_EQ(database.find_content("/a/file", stamp), k_b);
 }
 
 TEST(Database, TakesFactsThatAreNoneForDamage) {
@@ -208,9 +237,38 @@ TEST(FileStamp, ChangesWithAWriteAndIsAbsentWithoutAFile) {
   EXPECT_TRUE(is_racy(*before));
   write_file_atomic(file, std::string_view("two"));
   EXPECT_NE(stamp_of(file), before) << "another inode at least";
-  std::filesystem::last_write_time(
-      file, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
-  EXPECT_FALSE(is_racy(*stamp_of(file)));
+}
+
+TEST(FileStamp, ChangesWhenAFileIsWrittenInPlaceAndItsTimesAreSetBack) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "f";
+  write_file_atomic(file, std::string_view("one"));
+  const auto hour_ago = std::filesystem::file_time_type::clock::now() - std::chrono::hours(1);
+  std::filesystem::last_write_time(file, hour_ago);
+  const auto before = stamp_of(file);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // a tick of the file system's clock
+  std::ofstream(file, std::ios::binary) << "two";
+  std::filesystem::last_write_time(file, hour_ago);
+  const auto after = stamp_of(file);
+  ASSERT_TRUE(before && after);
+  EXPECT_EQ(after->mtime_ns, before->mtime_ns);
+  EXPECT_EQ(after->inode, before->inode);
+  EXPECT_NE(after, before);
+}
+
+TEST(FileStamp, IsRacyWhereTheFileMayStillBeBeingWritten) {
+  using namespace std::chrono;
+  const auto now = duration_cast<nanoseconds>(system_clock::now().time_since_epoch()).count();
+  constexpr std::int64_t s = 1'000'000'000;
+  const auto racy = [&](std::int64_t mtime, std::int64_t ctime) {
+    return is_racy({1, now + mtime * s, now + ctime * s, 1});
+  };
+  EXPECT_TRUE(racy(-2, -2)) << "FAT's times are even seconds";
+  EXPECT_FALSE(racy(-10, -10));
+  EXPECT_TRUE(racy(-3600, -1)) << "written or moved just now, with its old time";
+  EXPECT_TRUE(racy(-1, -3600)) << "where ctime is the time of creation";
+  EXPECT_FALSE(racy(3600, -10)) << "a time to come that was set says nothing";
+  EXPECT_TRUE(racy(3600, 3600)) << "the clock was set back";
 }
 
 }  // namespace

@@ -6,7 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <fstream>
+#include <thread>
 
 namespace ds {
 namespace {
@@ -15,6 +17,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::SizeIs;
 
 class PlanTest : public TinyDataset {
  protected:
@@ -136,19 +139,47 @@ TEST_F(PlanTest, ARemovedModelsFilesAreToBeRemoved) {
 }
 
 TEST_F(PlanTest, UnchangedModelsAreNotReadAgain) {
-  for (const char* model : {"models/box.off", "models/tetra.ply"})
-    std::filesystem::last_write_time(
-        recipe_folder() / model,
-        std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
   build();
-  // Same stamp, other bytes: only who reads the file can tell.
-  const auto file = recipe_folder() / "models/box.off";
-  const auto time = std::filesystem::last_write_time(file);
-  std::fstream out(file, std::ios::in | std::ios::out | std::ios::binary);
-  out << "XXX";
-  out.close();
-  std::filesystem::last_write_time(file, time);
+  // What is remembered of the box is made to be the tetrahedron: only who reads the file can tell.
+  const auto box = recipe_folder() / "models/box.off";
+  {
+    Dataset dataset = open_dataset(request, Access::look, real_disk);
+    dataset.database->put_content(box, *stamp_of(box),
+                                  hash_file(recipe_folder() / "models/tetra.ply").xxh128);
+  }
+  EXPECT_THAT(stale(), SizeIs(4)) << "the memory is believed";
+  EXPECT_THAT(stale(Stamps::ignore), IsEmpty()) << "the file is read";
+}
+
+TEST_F(PlanTest, AModelReplacedWithItsTimesKeptIsSeen) {
+  const auto box = recipe_folder() / "models/box.off";
+  const auto hour_ago = std::filesystem::file_time_type::clock::now() - std::chrono::hours(1);
+  std::filesystem::last_write_time(box, hour_ago);
+  build();
+  {
+    Dataset dataset = open_dataset(request, Access::look, real_disk);  // as a later plan does
+    dataset.database->put_content(box, *stamp_of(box), hash_file(box).xxh128);
+  }
+  std::string text = read_text_file(box);
+  text.replace(text.find("-1 -1 -2"), 8, "-1 -1 -3");
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  std::ofstream(box, std::ios::binary) << text;  // in place, as cp -p does
+  std::filesystem::last_write_time(box, hour_ago);
+  EXPECT_THAT(stale(), SizeIs(4));
+}
+
+TEST_F(PlanTest, AnOutputChangedBehindItsStampIsSeenByWhoReadsIt) {
+  build();
+  const auto file = output() / "images/box.off/1.png";
+  write_file_atomic(file, read_text_file(output() / "images/box.off/2.png"));
+  {
+    Dataset dataset = open_dataset(request, Access::look, real_disk);
+    PlacedFile placed = dataset.database->placed_files(dataset.row.id).at("images/box.off/1.png");
+    placed.stamp = stamp_of(file);
+    dataset.database->put_placed(dataset.row.id, placed);
+  }
   EXPECT_THAT(stale(), IsEmpty());
+  EXPECT_THAT(stale(Stamps::ignore), ElementsAre("box.off/1"));
 }
 
 }  // namespace

@@ -46,14 +46,14 @@ class TinyDataset : public testing::Test {
         dataset, plan, inputs, options, disk,
         [this] { return std::make_unique<FakeRenderer>(calls); }, observer, stop);
   }
-  Plan plan() {
+  Plan plan(Stamps stamps = Stamps::trust) {
     Dataset dataset = open_dataset(request, Access::look, real_disk);
-    Inputs inputs(*dataset.database);
+    Inputs inputs(*dataset.database, stamps);
     return make_plan(dataset, inputs, false, shard);
   }
-  std::vector<std::string> stale() {
+  std::vector<std::string> stale(Stamps stamps = Stamps::trust) {
     std::vector<std::string> ids;
-    for (const PlannedImage& image : plan().images)
+    for (const PlannedImage& image : plan(stamps).images)
       if (image.stale()) ids.push_back(image.spec.id);
     return ids;
   }

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is behind although no file looks newer: content under an unchanged stamp."""
+import os
+import shutil
+
+from harness import IMAGES, TinyCase, main
+
+
+class StaleTest(TinyCase):
+    def swap_keeping_times(self, path, change):
+        """Another content of the same size in the same inode, with the old mtime, as `cp -p` leaves it."""
+        before = path.stat()
+        data = change(path.read_bytes())
+        os.chmod(path, 0o644)
+        with open(path, "r+b") as file:
+            file.write(data)
+        os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
+        after = path.stat()
+        self.assertEqual((after.st_size, after.st_mtime_ns, after.st_ino),
+                         (before.st_size, before.st_mtime_ns, before.st_ino))
+
+    def test_a_model_replaced_with_its_times_kept(self):
+        os.utime(self.tiny / "models/box.off", (0, 0))  # as old as an archive may say
+        self.build()
+        self.swap_keeping_times(self.tiny / "models/box.off", lambda data: data.replace(b"-1 -1 -2", b"-1 -1 -3"))
+        self.assertEqual(self.run_it("status", self.out, "--json").json["stale"], IMAGES // 2)
+        self.assertEqual(self.run_it("verify", self.out).code, 1)
+        self.assert_counts(self.build(), built=IMAGES // 2, reused=IMAGES // 2)
+        self.assertEqual(self.run_it("verify", self.out).code, 0)
+
+    def test_an_output_changed_with_its_times_kept(self):
+        self.build()
+        files = self.contents()
+        picture = self.out / "images/box.off/1.png"
+        shutil.copy2(picture, self.folder / "whole")
+        self.swap_keeping_times(picture, lambda data: data[:-9] + b"x" + data[-8:])
+        self.assertEqual(self.run_it("status", self.out, "--json").json["stale"], 1)
+        self.assert_counts(self.build(), built=1, reused=IMAGES - 1)
+        self.assertEqual(self.contents(), files)
+
+    def test_rehash_reads_what_the_stamp_would_spare(self):
+        self.build()
+        for verb in ("build", "status", "plan"):
+            run = self.run_it(verb, self.recipe, "-o", self.out, "--rehash", "--json")
+            self.assertEqual(run.code, 0, run)
+
+
+if __name__ == "__main__":
+    main()
