@@ -8,8 +8,8 @@
 #include "builder/report/csv.h"
 #include "builder/report/page.h"
 #include "tracer/base/files.h"
+#include "tracer/base/streams.h"
 
-#include <cstdio>
 #include <filesystem>
 
 namespace ds {
@@ -41,7 +41,7 @@ nlohmann::json to_json(const PairAccuracy& pair) {
 void print(const Accuracy& accuracy, const fs::path& report, const fs::path& csv,
            const Arguments& arguments) {
   if (!arguments.json) {
-    fmt::print("report: {}\nnumbers: {}\n", report.string(), csv.string());
+    say(Stream::result, "report: {}\nnumbers: {}\n", report.string(), csv.string());
     return;
   }
   nlohmann::json pairs = nlohmann::json::array();
@@ -57,7 +57,6 @@ void print(const Accuracy& accuracy, const fs::path& report, const fs::path& csv
 }  // namespace
 
 int run_accuracy(const Arguments& arguments) {
-  const std::atomic<bool>& stop = stop_on_signal();
   RealDisk disk;
   Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
   if (!dataset.recipe.outputs.image)
@@ -77,10 +76,10 @@ int run_accuracy(const Arguments& arguments) {
   TracerOptions options;
   options.device = arguments.device;
   const auto tracer = make_scene_tracer(options);
-  const auto told = [](const std::string& what) { fmt::print(stderr, "{}\n", what); };
-  const Accuracy accuracy =
-      measure_accuracy(dataset.recipe, inputs, *tracer,
-                       {arguments.most_spp, arguments.seeds, 8, !arguments.no_choices}, told, stop);
+  const auto told = [](const std::string& what) { say(Stream::people, "{}\n", what); };
+  const Accuracy accuracy = measure_accuracy(
+      dataset.recipe, inputs, *tracer,
+      {arguments.most_spp, arguments.seeds, 8, !arguments.no_choices}, told, stop_on_signal());
   const std::string csv = accuracy_csv(accuracy);
   disk.write(csv_file, bytes_of(csv));
   disk.write(report, bytes_of(accuracy_page(accuracy, against_of(arguments.against), csv,

@@ -5,11 +5,12 @@
 #include "builder/cmd/stop_signal.h"
 #include "builder/cmd/verbs.h"
 #include "tracer/base/log.h"
+#include "tracer/base/streams.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cstdio>
+#include <csignal>
 #include <set>
 
 namespace ds {
@@ -46,11 +47,11 @@ void print_capped(BuildResult result, const Recipe& recipe) {
   if (result.capped.empty()) return;
   std::stable_sort(result.capped.begin(), result.capped.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
-  fmt::print("{} of {} images did not reach engine.error = {} with engine.max_spp = {}:\n",
-             result.capped.size(), result.images, recipe.engine.target->error,
-             recipe.engine.target->max_spp);
+  say(Stream::report, "{} of {} images did not reach engine.error = {} with engine.max_spp = {}:\n",
+      result.capped.size(), result.images, recipe.engine.target->error,
+      recipe.engine.target->max_spp);
   for (const auto& [id, error] : result.capped)
-    fmt::print("  {}: {:.4f}\n", id, error);
+    say(Stream::report, "  {}: {:.4f}\n", id, error);
 }
 
 void print_result(const BuildResult& result, const Dataset& dataset) {
@@ -61,10 +62,10 @@ void print_result(const BuildResult& result, const Dataset& dataset) {
   text += fmt::format(", in {:.1f} s", result.seconds);
   if (result.traced_samples > 0)
     text += fmt::format("; {} traced on {}", format_samples(result.traced_samples), result.device);
-  fmt::print("{}\n", text);
+  say(Stream::report, "{}\n", text);
   print_capped(result, dataset.recipe);
-  fmt::print("pictures: {}\nmanifest: {}\n", (dataset.folder / "images").string(),
-             (dataset.folder / "manifest" / "images.jsonl").string());
+  say(Stream::report, "pictures: {}\nmanifest: {}\n", (dataset.folder / "images").string(),
+      (dataset.folder / "manifest" / "images.jsonl").string());
 }
 
 /// What was wrong with the models of the shard's images: a line each.
@@ -80,7 +81,7 @@ void warn_of_mended(const Plan& plan) {
 }
 
 int dry_run(const Arguments& arguments, const Plan& plan) {
-  print_plan(arguments.json ? stderr : stdout, plan);
+  print_plan(arguments.json ? Stream::people : Stream::result, plan);
   const PlanCounts counts = count(plan);
   if (arguments.json)
     print_json({{"images", counts.images},
@@ -91,15 +92,16 @@ int dry_run(const Arguments& arguments, const Plan& plan) {
                 {"traced_samples", 0},
                 {"seconds", 0}});
   else
-    fmt::print("{}\n", summary(counts));
+    say(Stream::result, "{}\n", summary(counts));
   return counts.failed > 0 ? 1 : 0;
 }
 
 }  // namespace
 
 int run_build(const Arguments& arguments) {
+  // What the command is for lies in files: a reader of its text who goes away does not end it.
+  if (!arguments.dry_run) std::signal(SIGPIPE, SIG_IGN);
   const Shard shard = read_shard(arguments.shard);
-  const std::atomic<bool>& stop = stop_on_signal();
   RealDisk disk;
   Dataset dataset =
       open_dataset(arguments.request(), arguments.dry_run ? Access::look : Access::build, disk);
@@ -107,7 +109,7 @@ int run_build(const Arguments& arguments) {
   const Plan plan = make_plan(dataset, inputs, arguments.force, shard);
   warn_of_mended(plan);
   if (arguments.dry_run) return dry_run(arguments, plan);
-  if (arguments.explain) print_plan(arguments.json ? stderr : stdout, plan);
+  if (arguments.explain) print_plan(arguments.json ? Stream::people : Stream::report, plan);
 
   const RendererFactory factory = [&] {
     TracerOptions options;
@@ -116,14 +118,16 @@ int run_build(const Arguments& arguments) {
   };
   BuildResult result;
   {
+    // Only now: planning may be ended anywhere, and needs nobody to wait for it.
+    const std::atomic<bool>& stop = stop_on_signal();
     Progress progress(arguments.keep_going);
     result = execute(dataset, plan, inputs, {arguments.keep_going, arguments.force}, disk, factory,
                      progress, stop);
   }
   for (const auto& [what, why] : result.failures)
-    fmt::print(stderr, "dsbuild: error: {}: {}\n", what, why);
+    say(Stream::people, "dsbuild: error: {}: {}\n", what, why);
   if (result.stopped)
-    fmt::print(stderr, "dsbuild: stopped; what is finished is recorded, build again to go on\n");
+    say(Stream::people, "dsbuild: stopped; what is finished is recorded, build again to go on\n");
   if (arguments.json)
     print_json(to_json(result, dataset));
   else

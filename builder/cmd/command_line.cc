@@ -2,11 +2,12 @@
 #include "builder/build/dataset_manifest.h"
 #include "builder/cmd/arguments.h"
 #include "tracer/base/error.h"
+#include "tracer/base/streams.h"
 
 #include <CLI/CLI.hpp>
 
-#include <cstdio>
 #include <filesystem>
+#include <sstream>
 #include <system_error>
 
 namespace ds {
@@ -146,7 +147,10 @@ int run_command_line(std::span<const char* const> command_line) {
   try {
     app.parse(static_cast<int>(command_line.size()), command_line.data());
   } catch (const CLI::Success& asked) {  // --help and --version
-    return app.exit(asked);
+    std::ostringstream text;
+    const int code = app.exit(asked, text, text);
+    write_text(Stream::result, text.str());
+    return code;
   } catch (const CLI::ParseError& error) {
     fail(ErrorKind::usage, "{}; see dsbuild --help", error.what());
   }

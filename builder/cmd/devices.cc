@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/verbs.h"
+#include "tracer/base/streams.h"
 #include "tracer/device/opencl.h"
 
 #include <nlohmann/json.hpp>
-
-#include <cstdio>
 
 namespace ds {
 
@@ -23,15 +22,16 @@ int run_devices(const Arguments& arguments) {
                      {"compute_units", device.compute_units},
                      {"global_memory_bytes", device.global_memory_bytes}});
     if (!arguments.json)
-      fmt::print("{}: {} ({}, {}, driver {}), {} compute units, {:.1f} GiB\n", i, device.name,
-                 device.platform, device.is_cpu ? "CPU" : "GPU", device.driver,
-                 device.compute_units,
-                 static_cast<double>(device.global_memory_bytes) / (1024.0 * 1024.0 * 1024.0));
+      say(Stream::result, "{}: {} ({}, {}, driver {}), {} compute units, {:.1f} GiB\n", i,
+          device.name, device.platform, device.is_cpu ? "CPU" : "GPU", device.driver,
+          device.compute_units,
+          static_cast<double>(device.global_memory_bytes) / (1024.0 * 1024.0 * 1024.0));
   }
   if (arguments.json)
     print_json({{"devices", array}});
   else if (devices.empty())
-    fmt::print("no OpenCL device: install one, on a CPU for instance Debian's pocl-opencl-icd\n");
+    say(Stream::result,
+        "no OpenCL device: install one, on a CPU for instance Debian's pocl-opencl-icd\n");
   return devices.empty() ? 1 : 0;
 }
 

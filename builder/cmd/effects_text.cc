@@ -2,6 +2,7 @@
 #include "builder/cmd/effects_text.h"
 
 #include "builder/build/keys.h"
+#include "tracer/base/streams.h"
 
 #include <fmt/format.h>
 
@@ -39,13 +40,13 @@ nlohmann::json to_json(const std::vector<Effect>& effects) {
 void print_effects(const std::vector<Effect>& effects) {
   const auto simulated = std::count_if(effects.begin(), effects.end(),
                                        [](const Effect& effect) { return effect.simulated; });
-  fmt::print("effects: {} of {} are in this image's program, the rest is left out\n", simulated,
-             effects.size());
+  say(Stream::result, "effects: {} of {} are in this image's program, the rest is left out\n",
+      simulated, effects.size());
   for (const bool wanted : {true, false})
     for (const Effect& effect : effects)
       if (effect.simulated == wanted)
-        fmt::print("  {:<12} {:<9} {:<28} {}\n", wanted ? "simulated" : "compiled out", effect.sort,
-                   effect.name, effect.why);
+        say(Stream::result, "  {:<12} {:<9} {:<28} {}\n", wanted ? "simulated" : "compiled out",
+            effect.sort, effect.name, effect.why);
 }
 
 }  // namespace ds

@@ -4,9 +4,9 @@
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/verbs.h"
 #include "tracer/base/canonical.h"
+#include "tracer/base/streams.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 
 namespace ds {
@@ -61,13 +61,13 @@ void print_long_value(const PropertyChange& change, const TextLookup& find) {
   const std::string after = unfold(fmt::format("v = {}\n", *change.after), find);
   if (std::max(before.size(), after.size()) <= TextSet::k_longest_value) return;
   for (const std::string& line : diff_lines(before, after, k_most_lines))
-    fmt::print("    {}\n", line);
+    say(Stream::result, "    {}\n", line);
 }
 
 void print_changes(const std::vector<std::pair<std::string, PropertyChange>>& changes,
                    const TextLookup& find) {
   for (const auto& [part, change] : changes) {
-    fmt::print("  {}: {}\n", part, to_string(change));
+    say(Stream::result, "  {}: {}\n", part, to_string(change));
     print_long_value(change, find);
   }
 }
@@ -109,13 +109,13 @@ int run_explain(const Arguments& arguments) {
     return 0;
   }
   if (image.stale())
-    fmt::print("{}\n", line_of(image));
+    say(Stream::result, "{}\n", line_of(image));
   else
-    fmt::print("{}: up to date\n", image.spec.id);
+    say(Stream::result, "{}: up to date\n", image.spec.id);
   print_changes(changes, find);
-  fmt::print("render key {}\n", image.keys.render.hex());
+  say(Stream::result, "render key {}\n", image.keys.render.hex());
   for (std::size_t i = 0; i < k_part_count; ++i)
-    fmt::print("  {:<11} {}\n", k_part_names[i], image.keys.parts[i].hex());
+    say(Stream::result, "  {:<11} {}\n", k_part_names[i], image.keys.parts[i].hex());
   if (arguments.effects) print_effects(image_effects(dataset.recipe, inputs, image.spec));
   return 0;
 }

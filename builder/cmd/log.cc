@@ -3,8 +3,7 @@
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/progress.h"
 #include "builder/cmd/verbs.h"
-
-#include <cstdio>
+#include "tracer/base/streams.h"
 
 namespace ds {
 
@@ -25,10 +24,11 @@ int run_log(const Arguments& arguments) {
                      {"traced_samples", build.traced_samples},
                      {"seconds", build.seconds}});
     if (!arguments.json)
-      fmt::print("{} UTC  {:<8} {:>6} built {:>6} reused {:>4} failed {:>17} {:>9}  {} {}\n",
-                 build.started_at, build.outcome, build.built, build.reused, build.failed,
-                 format_samples(build.traced_samples), format_duration(build.seconds), build.host,
-                 build.device);
+      say(Stream::result,
+          "{} UTC  {:<8} {:>6} built {:>6} reused {:>4} failed {:>17} {:>9}  {} {}\n",
+          build.started_at, build.outcome, build.built, build.reused, build.failed,
+          format_samples(build.traced_samples), format_duration(build.seconds), build.host,
+          build.device);
   }
   if (arguments.json) print_json({{"builds", array}});
   return 0;

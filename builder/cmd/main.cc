@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/arguments.h"
+#include "builder/cmd/stop_signal.h"
 #include "builder/db/sqlite.h"
 #include "tracer/base/error.h"
+#include "tracer/base/streams.h"
 
 #include <csignal>
-#include <cstdio>
 #include <exception>
 #include <sstream>
 #include <string>
@@ -14,27 +15,40 @@ namespace {
 void print_error(const std::string& message) {
   std::istringstream lines(message);
   for (std::string line; std::getline(lines, line);)
-    fmt::print(stderr, "dsbuild: error: {}\n", line);
+    ds::say(ds::Stream::people, "dsbuild: error: {}\n", line);
 }
 
-}  // namespace
-
-int main(int count, char** arguments) {
-  // A file over `ulimit -f` is then an error of one write, as on a full disk, and not the end of
-  // the process.
-  std::signal(SIGXFSZ, SIG_IGN);
+int run(std::span<const char* const> arguments) {
   try {
-    return ds::run_command_line({arguments, static_cast<std::size_t>(count)});
+    return ds::run_command_line(arguments);
   } catch (const ds::DamagedDatabase& error) {
     print_error(error.what());
     print_error(
         "run dsbuild again: it sets the database aside and takes what was made from the store");
     return ds::exit_code(error.kind());
   } catch (const ds::Error& error) {
-    print_error(error.what());
+    // That the user stopped it, the user knows.
+    if (error.kind() != ds::ErrorKind::cancelled || !ds::stopped_by_signal())
+      print_error(error.what());
     return ds::exit_code(error.kind());
   } catch (const std::exception& error) {
     print_error(error.what());
     return 1;
   }
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  ds::reserve_standard_streams();
+  // A file over `ulimit -f` is then an error of one write, as on a full disk, and not the end of
+  // the process.
+  std::signal(SIGXFSZ, SIG_IGN);
+  int code = run({arguments, static_cast<std::size_t>(count)});
+  if (const auto why = ds::lost_result()) {
+    print_error("standard output: cannot write: " + *why);
+    code = code == 0 ? 1 : code;
+  }
+  ds::die_of_stop_signal();
+  return code;
 }

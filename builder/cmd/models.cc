@@ -2,30 +2,30 @@
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/verbs.h"
 #include "builder/recipe/recipe.h"
+#include "tracer/base/streams.h"
 #include "tracer/scene/mesh.h"
 
 #include <nlohmann/json.hpp>
-
-#include <cstdio>
 
 namespace ds {
 namespace {
 
 void print_header() {
-  fmt::print("{:<24}", "model");
+  say(Stream::result, "{:<24}", "model");
   for (const MeshReportColumn& column : k_mesh_report_columns)
-    fmt::print(" {:>14}", column.name);
-  fmt::print("  stored\n");
+    say(Stream::result, " {:>14}", column.name);
+  say(Stream::result, "  stored\n");
 }
 
 void print_row(const std::string& name, const MeshReport& report) {
-  fmt::print("{:<24}", name);
+  say(Stream::result, "{:<24}", name);
   for (const MeshReportColumn& column : k_mesh_report_columns)
-    fmt::print(" {:>14}", report.*column.count);
-  fmt::print("  {}\n", report.has_normals && report.has_uvs ? "normals, uvs"
-                       : report.has_normals                 ? "normals"
-                       : report.has_uvs                     ? "uvs"
-                                                            : "-");
+    say(Stream::result, " {:>14}", report.*column.count);
+  say(Stream::result, "  {}\n",
+      report.has_normals && report.has_uvs ? "normals, uvs"
+      : report.has_normals                 ? "normals"
+      : report.has_uvs                     ? "uvs"
+                                           : "-");
 }
 
 nlohmann::json to_json(const std::string& name, const MeshReport& report) {
@@ -52,14 +52,14 @@ int run_models(const Arguments& arguments) {
       models.push_back(to_json(name, report));
     } catch (const Error& error) {
       ++failed;
-      if (!arguments.json) fmt::print("{:<24} cannot be used: {}\n", name, error.what());
+      if (!arguments.json) say(Stream::result, "{:<24} cannot be used: {}\n", name, error.what());
       models.push_back({{"model", name}, {"error", error.what()}});
     }
   }
   if (arguments.json)
     print_json({{"models", models}, {"failed", failed}});
   else
-    fmt::print("{} models, {} cannot be used\n", recipe.models.size(), failed);
+    say(Stream::result, "{} models, {} cannot be used\n", recipe.models.size(), failed);
   return failed > 0 ? 1 : 0;
 }
 

@@ -7,12 +7,12 @@
 #include "builder/cmd/verbs.h"
 #include "builder/report/budget.h"
 #include "tracer/base/process_folder.h"
+#include "tracer/base/streams.h"
 #include "tracer/device/program_cache.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 
 namespace ds {
 namespace {
@@ -63,7 +63,7 @@ Calibration calibration_of(const Arguments& arguments, const Dataset& dataset, I
   options.device = arguments.device;
   const auto renderer = make_tracer_renderer(inputs, dataset.recipe, options);
   const std::filesystem::path cache = default_cache_folder();
-  const auto told = [](const std::string& what) { fmt::print(stderr, "{}\n", what); };
+  const auto told = [](const std::string& what) { say(Stream::people, "{}\n", what); };
   return calibrate(dataset.recipe, inputs, *renderer, CalibrationCache(cache),
                    {arguments.recalibrate, by_error}, make_process_folder(cache / "calibrating"),
                    {told, wall_clock, stop_on_signal()});
@@ -147,10 +147,10 @@ nlohmann::json answer_json(const Answer& answer, const Calibration& calibration)
 }
 
 void print_answer(const Answer& answer, const Calibration& calibration) {
-  fmt::print("{}, on {}\n", answer.sentence, calibration.device);
+  say(Stream::result, "{}, on {}\n", answer.sentence, calibration.device);
   if (!answer.forecast) return;
-  fmt::print("time {}\ndisk {}\n\n{}", time_text(answer.forecast->seconds),
-             size_text(answer.forecast->bytes), pairs_text(*answer.forecast));
+  say(Stream::result, "time {}\ndisk {}\n\n{}", time_text(answer.forecast->seconds),
+      size_text(answer.forecast->bytes), pairs_text(*answer.forecast));
 }
 
 }  // namespace
@@ -168,8 +168,8 @@ int run_plan(const Arguments& arguments) {
   const PlanCounts counts = count(plan);
   nlohmann::json object = arguments.json ? plan_json(plan, counts) : nlohmann::json();
   if (!arguments.json) {
-    if (!wish.any) print_plan(stdout, plan);
-    fmt::print("{}\n", summary(counts));
+    if (!wish.any) print_plan(Stream::result, plan);
+    say(Stream::result, "{}\n", summary(counts));
   }
   bool answered = true;
   if (wish.any) {

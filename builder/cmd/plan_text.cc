@@ -2,9 +2,9 @@
 #include "builder/cmd/plan_text.h"
 
 #include "tracer/base/error.h"
+#include "tracer/base/streams.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <map>
 
 namespace ds {
@@ -59,22 +59,23 @@ std::string line_of(const PlannedImage& image) {
   return fmt::format("{}: {}: {}", image.spec.id, step_of(image), fmt::join(image.reasons, "; "));
 }
 
-void print_plan(std::FILE* stream, const Plan& plan) {
+void print_plan(Stream to, const Plan& plan) {
   std::map<std::string, std::vector<std::string>> failures;
   for (const PlannedImage& image : plan.images) {
     if (image.elsewhere) continue;
     if (image.error) failures[image.error->what()].push_back(image.spec.id);
-    if (image.stale()) fmt::print(stream, "{}\n", line_of(image));
+    if (image.stale()) say(to, "{}\n", line_of(image));
   }
   for (const std::string& path : plan.to_remove)
-    fmt::print(stream, "{}: remove: no image of the recipe has it\n", path);
+    say(to, "{}: remove: no image of the recipe has it\n", path);
   for (const auto& [why, ids] : failures)
-    fmt::print(stream, "{}{}: cannot be made: {}\n", ids.front(),
-               ids.size() > 1 ? fmt::format(" and {} more", ids.size() - 1) : "", why);
+    say(to, "{}{}: cannot be made: {}\n", ids.front(),
+        ids.size() > 1 ? fmt::format(" and {} more", ids.size() - 1) : "", why);
 }
 
 void print_json(const nlohmann::json& object) {
-  fmt::print("{}\n", object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  say(Stream::result, "{}\n",
+      object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 }  // namespace ds

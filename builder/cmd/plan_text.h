@@ -3,6 +3,7 @@
 
 #include "builder/build/plan.h"
 #include "builder/cmd/arguments.h"
+#include "tracer/base/streams.h"
 
 #include <nlohmann/json.hpp>
 
@@ -36,8 +37,8 @@ std::string line_of(const PlannedImage& image);
 /// What it needs: "trace", "develop", "place"; empty for an image that is up to date.
 const char* step_of(const PlannedImage& image);
 
-/// Lists what of the shard is stale or fails on the stream, and what is to be removed.
-void print_plan(std::FILE* stream, const Plan& plan);
+/// Lists what of the shard is stale or fails, and what is to be removed.
+void print_plan(Stream to, const Plan& plan);
 
 /// Prints one JSON object as the last line of standard output. Text that is no UTF-8 is mended with
 /// U+FFFD.

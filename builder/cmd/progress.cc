@@ -2,14 +2,16 @@
 #include "builder/cmd/progress.h"
 
 #include "tracer/base/error.h"
+#include "tracer/base/streams.h"
+#include "tracer/base/text_width.h"
 
-#include <cstdio>
-#include <unistd.h>
+#include <algorithm>
 
 namespace ds {
 namespace {
 
-constexpr const char* k_erase_line = "\r\x1b[K";
+/// Of an image's name, however narrow the terminal is.
+constexpr int k_least_name_columns = 8;
 
 }  // namespace
 
@@ -28,15 +30,10 @@ std::string format_duration(double seconds) {
   return fmt::format("{}:{:02}", minutes, whole % 60);
 }
 
-Progress::Progress(bool tell_failures)
-    : tell_failures_(tell_failures), moves_(::isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(bool tell_failures) : tell_failures_(tell_failures), moves_(has_status_line()) {}
 
 Progress::~Progress() {
-  clear();
-}
-
-void Progress::clear() {
-  if (moves_) std::fputs(k_erase_line, stderr);
+  clear_status_line();
 }
 
 void Progress::started(std::uint64_t images, std::uint64_t samples) {
@@ -53,15 +50,22 @@ std::string Progress::line(const std::string& image, std::uint64_t samples_now) 
   const double done = samples_ > 0 ? static_cast<double>(samples_done_ + samples_now)
                                    : static_cast<double>(images_done_);
   const double share = total > 0 ? done / total : 1;
-  std::string text = fmt::format("[{}/{}] {:3.0f}% {}", images_done_, images_, 100 * share, image);
+  const std::string before = fmt::format("[{}/{}] {:3.0f}% ", images_done_, images_, 100 * share);
+  std::string behind;
   if (traced > 0 && seconds > 0)
-    text += fmt::format("  {:.2f} Msamples/s", traced / seconds * 1e-6);
-  if (share > 0 && share < 1) text += "  ETA " + format_duration(seconds * (1 - share) / share);
-  return text;
+    behind += fmt::format("  {:.2f} Msamples/s", traced / seconds * 1e-6);
+  if (share > 0 && share < 1) behind += "  ETA " + format_duration(seconds * (1 - share) / share);
+  const std::optional<int> columns = line_columns();
+  if (!columns) return before + image + behind;
+  // What is too long for the terminal is the name; numbers are what people watch.
+  const int for_name = *columns - columns_of(before) - columns_of(behind);
+  return cut_to_columns(
+      before + shorten_to_columns(image, std::max(for_name, k_least_name_columns)) + behind,
+      *columns);
 }
 
 void Progress::show(const std::string& image, std::uint64_t samples_now) {
-  if (moves_) fmt::print(stderr, "{}{}", k_erase_line, line(image, samples_now));
+  if (moves_) show_status_line(line(image, samples_now));
 }
 
 void Progress::image_started(const PlannedImage& image) {
@@ -79,7 +83,7 @@ void Progress::image_done(const PlannedImage& image, const ImageWork& work) {
   if (moves_)
     show(image.spec.id, 0);
   else
-    fmt::print(stderr, "{}\n", line(image.spec.id, 0));
+    say(Stream::people, "{}\n", line(image.spec.id, 0));
 }
 
 void Progress::image_failed(const PlannedImage& image, const std::string& why) {
@@ -87,9 +91,8 @@ void Progress::image_failed(const PlannedImage& image, const std::string& why) {
   if (image.error) return;
   ++images_done_;
   samples_done_ += image.trace_film ? image.samples() : 0;
-  clear();
   if (!tell_failures_) return;
-  fmt::print(stderr, "dsbuild: error: {}: {}\n", image.spec.id, why);
+  say(Stream::people, "dsbuild: error: {}: {}\n", image.spec.id, why);
 }
 
 }  // namespace ds

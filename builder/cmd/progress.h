@@ -9,8 +9,8 @@
 
 namespace ds {
 
-/// Shows a build's progress on standard error: one line that moves on a terminal, one line an image
-/// elsewhere.
+/// Shows a build's progress on standard error: one line that moves on a terminal and fits it, one
+/// line an image elsewhere.
 class Progress : public BuildObserver {
  public:
   /// `tell_failures`: as they come; else they are left to the end, which is then near.
@@ -26,7 +26,6 @@ class Progress : public BuildObserver {
  private:
   std::string line(const std::string& image, std::uint64_t samples_now) const;
   void show(const std::string& image, std::uint64_t samples_now);
-  void clear();
 
   using Clock = std::chrono::steady_clock;
   bool tell_failures_;

@@ -3,8 +3,7 @@
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/progress.h"
 #include "builder/cmd/verbs.h"
-
-#include <cstdio>
+#include "tracer/base/streams.h"
 
 namespace ds {
 
@@ -25,16 +24,15 @@ int run_status(const Arguments& arguments) {
     print_json(object);
     return counts.failed > 0 ? 1 : 0;
   }
-  fmt::print("dataset  {}\nrecipe   {}\nfolder   {}\n", dataset.recipe.name,
-             dataset.recipe.file.string(), dataset.folder.string());
-  if (!store.empty()) fmt::print("store    {}\n", store);
+  say(Stream::result, "dataset  {}\nrecipe   {}\nfolder   {}\n", dataset.recipe.name,
+      dataset.recipe.file.string(), dataset.folder.string());
+  if (!store.empty()) say(Stream::result, "store    {}\n", store);
   if (builds.empty())
-    fmt::print("build    never\n");
+    say(Stream::result, "build    never\n");
   else
-    fmt::print("build    {} UTC, {}, {} built, {}\n", builds.front().started_at,
-               builds.front().outcome, builds.front().built,
-               format_duration(builds.front().seconds));
-  fmt::print("{}\n", summary(counts));
+    say(Stream::result, "build    {} UTC, {}, {} built, {}\n", builds.front().started_at,
+        builds.front().outcome, builds.front().built, format_duration(builds.front().seconds));
+  say(Stream::result, "{}\n", summary(counts));
   return counts.failed > 0 ? 1 : 0;
 }
 

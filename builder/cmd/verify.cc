@@ -4,8 +4,8 @@
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/stop_signal.h"
 #include "builder/cmd/verbs.h"
+#include "tracer/base/streams.h"
 
-#include <cstdio>
 #include <filesystem>
 
 namespace ds {
@@ -28,20 +28,20 @@ void verify_dataset(VerifyResult& result, const Arguments& arguments) {
   TracerOptions options;
   options.device = arguments.device;
   const auto renderer = make_tracer_renderer(inputs, dataset.recipe, options);
-  const auto told = [](const std::string& id) { fmt::print(stderr, "tracing {} again\n", id); };
+  const auto told = [](const std::string& id) { say(Stream::people, "tracing {} again\n", id); };
   verify_by_tracing(result, dataset, plan, inputs, *renderer, arguments.rerender, arguments.seed,
                     told, stop_on_signal());
 }
 
 void print_findings(const VerifyResult& result) {
   for (const Finding& finding : result.findings)
-    fmt::print("{}: {}: {}\n", to_string(finding.kind), finding.path, finding.what);
-  fmt::print("{} images, {} files: ", result.images, result.files);
-  if (result.rerendered > 0) fmt::print("{} images traced again: ", result.rerendered);
+    say(Stream::result, "{}: {}: {}\n", to_string(finding.kind), finding.path, finding.what);
+  say(Stream::result, "{} images, {} files: ", result.images, result.files);
+  if (result.rerendered > 0) say(Stream::result, "{} images traced again: ", result.rerendered);
   if (result.findings.empty())
-    fmt::print("all as the manifest says\n");
+    say(Stream::result, "all as the manifest says\n");
   else
-    fmt::print("{} differences\n", result.findings.size());
+    say(Stream::result, "{} differences\n", result.findings.size());
 }
 
 }  // namespace

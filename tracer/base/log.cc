@@ -1,15 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/log.h"
 
-#include <fmt/format.h>
+#include "tracer/base/streams.h"
 
-#include <cstdio>
+#include <mutex>
+#include <set>
+#include <string>
 
 namespace ds {
+namespace {
+
+bool is_new(std::string_view message) {
+  static std::mutex mutex;
+  static std::set<std::string, std::less<>> said;
+  const std::lock_guard lock(mutex);
+  return said.emplace(message).second;
+}
+
+}  // namespace
 
 void warn(std::string_view message) {
-  const std::string line = fmt::format("dsbuild: warning: {}\n", message);
-  std::fwrite(line.data(), 1, line.size(), stderr);
+  if (is_new(message)) say(Stream::people, "dsbuild: warning: {}\n", message);
 }
 
 }  // namespace ds

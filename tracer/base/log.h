@@ -5,8 +5,9 @@
 
 namespace ds {
 
-/// One line on standard error, prefixed "dsbuild: warning: ". Safe from any thread; a line is never
-/// torn.
+/// One line on standard error, prefixed "dsbuild: warning: "; nothing where the same was said
+/// before: what is wrong with a file is said once, however often it is read. Safe from any thread;
+/// a line is never torn.
 void warn(std::string_view message);
 
 }  // namespace ds

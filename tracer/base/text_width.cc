@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/base/text_width.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+
+namespace ds {
+namespace {
+
+struct Range {
+  char32_t first, last;
+};
+
+/// Marks that combine with the character before them, joiners and direction marks, by block. From
+/// Unicode's categories Mn, Me and Cf; wcwidth() has them too, but only in a locale of UTF-8, and
+/// nothing here may depend on the locale.
+constexpr Range k_no_columns[] = {
+    {0x0300, 0x036f},   {0x0483, 0x0489},   {0x0591, 0x05bd},   {0x05bf, 0x05bf},
+    {0x05c1, 0x05c2},   {0x05c4, 0x05c5},   {0x05c7, 0x05c7},   {0x0610, 0x061a},
+    {0x064b, 0x065f},   {0x0670, 0x0670},   {0x06d6, 0x06dc},   {0x06df, 0x06e4},
+    {0x06e7, 0x06e8},   {0x06ea, 0x06ed},   {0x0711, 0x0711},   {0x0730, 0x074a},
+    {0x07a6, 0x07b0},   {0x07eb, 0x07f3},   {0x0816, 0x082d},   {0x0859, 0x085b},
+    {0x08d3, 0x0902},   {0x093a, 0x093a},   {0x093c, 0x093c},   {0x0941, 0x0948},
+    {0x094d, 0x094d},   {0x0951, 0x0957},   {0x0962, 0x0963},   {0x0981, 0x0981},
+    {0x09bc, 0x09bc},   {0x09c1, 0x09c4},   {0x09cd, 0x09cd},   {0x0a01, 0x0a02},
+    {0x0a3c, 0x0a51},   {0x0a70, 0x0a71},   {0x0abc, 0x0abc},   {0x0ac1, 0x0ac8},
+    {0x0acd, 0x0acd},   {0x0b3c, 0x0b3c},   {0x0b4d, 0x0b4d},   {0x0bcd, 0x0bcd},
+    {0x0c4d, 0x0c4d},   {0x0ccd, 0x0ccd},   {0x0d4d, 0x0d4d},   {0x0e31, 0x0e31},
+    {0x0e34, 0x0e3a},   {0x0e47, 0x0e4e},   {0x0eb1, 0x0eb1},   {0x0eb4, 0x0ebc},
+    {0x0ec8, 0x0ecd},   {0x0f18, 0x0f19},   {0x0f71, 0x0f7e},   {0x0f80, 0x0f84},
+    {0x102d, 0x1030},   {0x1032, 0x1037},   {0x1039, 0x103a},   {0x1160, 0x11ff},
+    {0x135d, 0x135f},   {0x1712, 0x1714},   {0x17b4, 0x17b5},   {0x17b7, 0x17bd},
+    {0x17c9, 0x17d3},   {0x180b, 0x180e},   {0x1ab0, 0x1aff},   {0x1dc0, 0x1dff},
+    {0x200b, 0x200f},   {0x202a, 0x202e},   {0x2060, 0x206f},   {0x20d0, 0x20f0},
+    {0x2cef, 0x2cf1},   {0x2de0, 0x2dff},   {0x302a, 0x302d},   {0x3099, 0x309a},
+    {0xa66f, 0xa672},   {0xa674, 0xa67d},   {0xa69e, 0xa69f},   {0xa6f0, 0xa6f1},
+    {0xa8e0, 0xa8f1},   {0xfb1e, 0xfb1e},   {0xfe00, 0xfe0f},   {0xfe20, 0xfe2f},
+    {0xfeff, 0xfeff},   {0xfff9, 0xfffb},   {0x1d165, 0x1d169}, {0x1d16d, 0x1d182},
+    {0x1e8d0, 0x1e8d6}, {0x1e944, 0x1e94a}, {0x1f3fb, 0x1f3ff}, {0xe0000, 0xe0fff}};
+
+/// East_Asian_Width W and F, and emoji that are shown as pictures, by block.
+constexpr Range k_two_columns[] = {
+    {0x1100, 0x115f},   {0x231a, 0x231b},   {0x2329, 0x232a},   {0x23e9, 0x23ec},
+    {0x23f0, 0x23f0},   {0x23f3, 0x23f3},   {0x25fd, 0x25fe},   {0x2614, 0x2615},
+    {0x2648, 0x2653},   {0x267f, 0x267f},   {0x2693, 0x2693},   {0x26a1, 0x26a1},
+    {0x26aa, 0x26ab},   {0x26bd, 0x26be},   {0x26c4, 0x26c5},   {0x26ce, 0x26ce},
+    {0x26d4, 0x26d4},   {0x26ea, 0x26ea},   {0x26f2, 0x26f3},   {0x26f5, 0x26f5},
+    {0x26fa, 0x26fa},   {0x26fd, 0x26fd},   {0x2705, 0x2705},   {0x270a, 0x270b},
+    {0x2728, 0x2728},   {0x274c, 0x274c},   {0x274e, 0x274e},   {0x2753, 0x2755},
+    {0x2757, 0x2757},   {0x2795, 0x2797},   {0x27b0, 0x27b0},   {0x27bf, 0x27bf},
+    {0x2b1b, 0x2b1c},   {0x2b50, 0x2b50},   {0x2b55, 0x2b55},   {0x2e80, 0x303e},
+    {0x3041, 0x33ff},   {0x3400, 0x4dbf},   {0x4e00, 0x9fff},   {0xa000, 0xa4cf},
+    {0xa960, 0xa97f},   {0xac00, 0xd7a3},   {0xf900, 0xfaff},   {0xfe10, 0xfe19},
+    {0xfe30, 0xfe6f},   {0xff00, 0xff60},   {0xffe0, 0xffe6},   {0x16fe0, 0x1b2ff},
+    {0x1f004, 0x1f004}, {0x1f0cf, 0x1f0cf}, {0x1f18e, 0x1f18e}, {0x1f191, 0x1f19a},
+    {0x1f200, 0x1f320}, {0x1f32d, 0x1f335}, {0x1f337, 0x1f37c}, {0x1f37e, 0x1f393},
+    {0x1f3a0, 0x1f3ca}, {0x1f3cf, 0x1f3d3}, {0x1f3e0, 0x1f3f0}, {0x1f3f4, 0x1f3f4},
+    {0x1f3f8, 0x1f43e}, {0x1f440, 0x1f440}, {0x1f442, 0x1f4fc}, {0x1f4ff, 0x1f53d},
+    {0x1f54b, 0x1f54e}, {0x1f550, 0x1f567}, {0x1f57a, 0x1f57a}, {0x1f595, 0x1f596},
+    {0x1f5a4, 0x1f5a4}, {0x1f5fb, 0x1f64f}, {0x1f680, 0x1f6c5}, {0x1f6cc, 0x1f6cc},
+    {0x1f6d0, 0x1f6d2}, {0x1f6d5, 0x1f6d7}, {0x1f6eb, 0x1f6ec}, {0x1f6f4, 0x1f6fc},
+    {0x1f7e0, 0x1f7eb}, {0x1f90c, 0x1f93a}, {0x1f93c, 0x1f945}, {0x1f947, 0x1faff},
+    {0x20000, 0x2fffd}, {0x30000, 0x3fffd}};
+
+template <std::size_t N>
+bool is_in(const Range (&ranges)[N], char32_t character) {
+  const auto* const at =
+      std::lower_bound(std::begin(ranges), std::end(ranges), character,
+                       [](const Range& range, char32_t wanted) { return range.last < wanted; });
+  return at != std::end(ranges) && at->first <= character;
+}
+
+int columns_of_character(char32_t character) {
+  if (character < 0x20 || (character >= 0x7f && character < 0xa0)) return 0;
+  if (character < 0x300) return 1;
+  if (is_in(k_no_columns, character)) return 0;
+  return is_in(k_two_columns, character) ? 2 : 1;
+}
+
+struct Glyph {
+  std::size_t bytes;
+  int columns;
+};
+
+/// The character that the text, which is not empty, begins with; one byte where that is no UTF-8.
+Glyph first_glyph(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(text[i]); };
+  const std::uint8_t head = byte(0);
+  if (head < 0x80) return {1, columns_of_character(char32_t{head})};
+  const std::size_t bytes = head >= 0xf0 ? 4 : head >= 0xe0 ? 3 : 2;
+  if (head < 0xc2 || head > 0xf4 || text.size() < bytes) return {1, 1};
+  char32_t character = head & (0x7fU >> bytes);
+  for (std::size_t i = 1; i < bytes; ++i) {
+    if ((byte(i) & 0xc0U) != 0x80U) return {1, 1};
+    character = (character << 6U) | (byte(i) & 0x3fU);
+  }
+  return {bytes, columns_of_character(character)};
+}
+
+/// The longest end of the text that takes at most so many columns.
+std::string_view end_of(std::string_view text, int columns) {
+  int taken = columns_of(text);
+  while (!text.empty() && taken > columns) {
+    const Glyph glyph = first_glyph(text);
+    taken -= glyph.columns;
+    text.remove_prefix(glyph.bytes);
+  }
+  // What combined with the character that was cut off.
+  while (!text.empty() && first_glyph(text).columns == 0)
+    text.remove_prefix(first_glyph(text).bytes);
+  return text;
+}
+
+}  // namespace
+
+int columns_of(std::string_view text) {
+  int columns = 0;
+  while (!text.empty()) {
+    const Glyph glyph = first_glyph(text);
+    columns += glyph.columns;
+    text.remove_prefix(glyph.bytes);
+  }
+  return columns;
+}
+
+std::string cut_to_columns(std::string_view text, int columns) {
+  std::size_t bytes = 0;
+  for (int taken = 0; bytes < text.size();) {
+    const Glyph glyph = first_glyph(text.substr(bytes));
+    taken += glyph.columns;
+    if (taken > columns) break;
+    bytes += glyph.bytes;
+  }
+  return std::string(text.substr(0, bytes));
+}
+
+std::string shorten_to_columns(std::string_view text, int columns) {
+  if (columns_of(text) <= columns) return std::string(text);
+  constexpr std::string_view k_left_out = "...";
+  const int kept = columns - static_cast<int>(k_left_out.size());
+  if (kept < 2) return cut_to_columns(text, std::max(0, columns));
+  return cut_to_columns(text, kept - kept / 2) + std::string(k_left_out) +
+         std::string(end_of(text, kept / 2));
+}
+
+}  // namespace ds
