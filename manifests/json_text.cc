@@ -54,7 +54,9 @@ class Writer {
   void write_float(double value) {
     if (!std::isfinite(value))
       fail(ErrorKind::asset, "a manifest's numbers must be finite, got {}", value);
+    const std::size_t begin = text_.size();
     fmt::format_to(std::back_inserter(text_), "{}", value == 0 ? 0.0 : value);
+    if (text_.find_first_of(".e", begin) == text_.npos) text_ += ".0";
   }
 
   /// Text, integers, booleans, null: one spelling each.

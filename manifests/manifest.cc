@@ -79,10 +79,16 @@ json counts_object(const std::vector<std::pair<std::string, std::uint64_t>>& cou
   return object;
 }
 
+json to_json_value(const LicenceRecord& licence) {
+  return {{"spdx", licence.spdx.empty() ? json() : json(licence.spdx)},
+          {"text", licence.text},
+          {"assets", licence.assets}};
+}
+
 json to_json_value(const DatasetRecord& dataset) {
-  json licences = json::object();
-  for (const auto& [asset, text] : dataset.licences)
-    licences[asset] = text;
+  json licences = json::array();
+  for (const LicenceRecord& licence : dataset.licences)
+    licences.push_back(to_json_value(licence));
   json object{
       {"format", k_manifest_format},
       {"name", dataset.name},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "manifests/camera_geometry.h"
+#include "manifests/licences.h"
 #include "tracer/base/hash.h"
 #include "tracer/render/render.h"
 #include "tracer/scene/mesh.h"
@@ -20,17 +21,22 @@ namespace ds {
 /// no path of this machine stands in them, so two machines that make the same pictures write the
 /// same bytes.
 ///
-///   images.jsonl       one canonical JSON object a line and image, ordered by id (ImageRecord,
-///   same field names) dataset.json       one JSON object (DatasetRecord), indented for reading
-///   checksums.xxh128   "<32 hex digits>  <path>" a line: XXH3-128 of every file of the images and
-///   of the two above,
-///                      ordered by path; what `xxhsum -c manifest/checksums.xxh128` reads from
-///                      inside the folder
+///   images.jsonl
+///       one canonical JSON object a line and image, ordered by id (ImageRecord, same field names)
+///   dataset.json
+///       one JSON object (DatasetRecord), indented for reading
+///   checksums.xxh128
+///       "<32 hex digits>  <path>" a line, ordered by path: XXH3-128 of every file of the images
+///       and of the two above; what `xxhsum -c manifest/checksums.xxh128` reads in the folder
 ///
-/// Canonical: keys sorted by bytes, no spaces, numbers the shortest that read back exactly, UTF-8
-/// unescaped. "format" in dataset.json counts up when a field changes its meaning; readers refuse
-/// what they do not know.
-inline constexpr int k_manifest_format = 1;
+/// Canonical: keys sorted by bytes, no spaces, numbers the shortest that read back exactly and
+/// floats always with a point or an exponent, so that a column has one type, UTF-8 unescaped.
+/// "format" in dataset.json counts up when a field changes its meaning; readers refuse what they do
+/// not know. History:
+///
+///   1  "licences" an object of asset: text; floats without a point where they are whole
+///   2  "licences" a list of {"spdx", "text", "assets"}, each text once; read as 2 is 1 too
+inline constexpr int k_manifest_format = 2;
 
 /// One file of a dataset.
 struct FileRecord {
@@ -67,8 +73,7 @@ struct DatasetRecord {
   std::uint64_t seed = 0;
   std::vector<std::string> class_paths;
   std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< "images", "models", "train", ...
-  std::vector<std::pair<std::string, std::string>>
-      licences;  ///< asset -> licence text found beside it
+  std::vector<LicenceRecord> licences;  ///< found beside the assets, as group_licences gives them
   /// Model -> what its file held that no mesh can, and how often, by MeshReport's names. Only
   /// models that were mended; "mended_models" is not there where none was.
   std::vector<std::pair<std::string, MendedDamage>> mended_models{};

@@ -212,16 +212,50 @@ void read_members(Fields& fields, const json& owner, const SourcePlace& place,
   }
 }
 
-void read_class_paths(Fields& fields, std::vector<std::string>& to) {
-  const json* paths = fields.find("class_paths");
-  if (paths == nullptr) return;
-  const bool texts = paths->is_array() && std::all_of(paths->begin(), paths->end(),
-                                                      [](const json& p) { return p.is_string(); });
+void read_texts(Fields& fields, const char* name, std::vector<std::string>& to) {
+  const json* list = fields.find(name);
+  if (list == nullptr) return;
+  const bool texts = list->is_array() && std::all_of(list->begin(), list->end(),
+                                                     [](const json& p) { return p.is_string(); });
   if (texts) {
-    to = paths->get<std::vector<std::string>>();
+    to = list->get<std::vector<std::string>>();
   } else {
-    fields.wrong("class_paths", "a list of texts", *paths);
+    fields.wrong(name, "a list of texts", *list);
   }
+}
+
+/// Before format 2: the text once for each asset.
+std::vector<LicenceRecord> licences_of_format_1(Fields& fields, const json& owner,
+                                                const SourcePlace& place,
+                                                Diagnostics& diagnostics) {
+  std::vector<std::pair<std::string, std::string>> texts;
+  read_members(fields, owner, place, diagnostics, "licences", texts,
+               [](Fields& f, const char* name, std::string& to) { f.text(name, to); });
+  return group_licences(texts);
+}
+
+std::vector<LicenceRecord> licences_from(Fields& fields, const SourcePlace& place,
+                                         Diagnostics& diagnostics) {
+  const json* list = fields.find("licences");
+  if (list == nullptr) return {};
+  if (!list->is_array()) {
+    fields.wrong("licences", "a list", *list);
+    return {};
+  }
+  std::vector<LicenceRecord> licences;
+  for (const json& value : *list) {
+    if (!value.is_object()) {
+      fields.wrong("licences", "objects", value);
+      continue;
+    }
+    LicenceRecord& licence = licences.emplace_back();
+    Fields members(value, place, diagnostics);
+    if (const json* spdx = members.find("spdx"); spdx != nullptr && !spdx->is_null())
+      members.text("spdx", licence.spdx);
+    members.text("text", licence.text);
+    read_texts(members, "assets", licence.assets);
+  }
+  return licences;
 }
 
 /// Not there where no model was mended.
@@ -261,17 +295,18 @@ DatasetRecord dataset_from_json(const std::string& text, const std::string& file
     Fields fields(*object, place, diagnostics);
     int format = 0;
     fields.count("format", format);
-    if (format != 0 && format != k_manifest_format) fields.wrong("format", "1", format);
+    if (format != 0 && format != 1 && format != k_manifest_format)
+      fields.wrong("format", "1 or 2", format);
     fields.text("name", dataset.name);
     fields.text("licence", dataset.licence);
     fields.text("recipe", dataset.recipe_text);
     fields.text("dsbuild_version", dataset.dsbuild_version);
     fields.count("seed", dataset.seed);
-    read_class_paths(fields, dataset.class_paths);
+    read_texts(fields, "class_paths", dataset.class_paths);
     read_members(fields, *object, place, diagnostics, "counts", dataset.counts,
                  [](Fields& f, const char* name, std::uint64_t& to) { f.count(name, to); });
-    read_members(fields, *object, place, diagnostics, "licences", dataset.licences,
-                 [](Fields& f, const char* name, std::string& to) { f.text(name, to); });
+    dataset.licences = format == 1 ? licences_of_format_1(fields, *object, place, diagnostics)
+                                   : licences_from(fields, place, diagnostics);
     read_mended_models(*object, place, diagnostics, dataset);
   }
   diagnostics.throw_if_any();

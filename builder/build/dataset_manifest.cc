@@ -30,7 +30,9 @@ std::optional<std::string> licence_beside(const fs::path& asset) {
   return std::nullopt;
 }
 
-void add_licences(DatasetRecord& record, const char* kind, const std::vector<fs::path>& assets) {
+using LicenceTexts = std::vector<std::pair<std::string, std::string>>;  ///< asset, text
+
+void add_licences(LicenceTexts& texts, const char* kind, const std::vector<fs::path>& assets) {
   std::map<fs::path, std::optional<std::string>>
       known;  // one look a folder: there may be thousands of models
   std::error_code error;
@@ -39,8 +41,7 @@ void add_licences(DatasetRecord& record, const char* kind, const std::vector<fs:
     const auto [entry, is_new] = known.try_emplace(folder);
     if (is_new) entry->second = licence_beside(asset);
     if (entry->second)
-      record.licences.emplace_back(fmt::format("{}/{}", kind, asset.filename().string()),
-                                   *entry->second);
+      texts.emplace_back(fmt::format("{}/{}", kind, asset.filename().string()), *entry->second);
   }
 }
 
@@ -140,9 +141,11 @@ DatasetRecord dataset_record(const Recipe& recipe, const std::map<std::string, M
     record.counts.emplace_back(split, count);
   for (const auto& [model, what] : mended)
     if (models.contains(model)) record.mended_models.emplace_back(model, what.damage);
-  add_licences(record, "models", recipe.models);
-  add_licences(record, "materials", recipe.materials);
-  add_licences(record, "environments", recipe.environments);
+  LicenceTexts texts;
+  add_licences(texts, "models", recipe.models);
+  add_licences(texts, "materials", recipe.materials);
+  add_licences(texts, "environments", recipe.environments);
+  record.licences = group_licences(texts);
   return record;
 }
 

@@ -90,7 +90,7 @@ int dry_run(const Arguments& arguments, const Plan& plan) {
                 {"failed", counts.failed},
                 {"stale", counts.stale},
                 {"traced_samples", 0},
-                {"seconds", 0}});
+                {"seconds", 0.0}});
   else
     say(Stream::result, "{}\n", summary(counts));
   return counts.failed > 0 ? 1 : 0;

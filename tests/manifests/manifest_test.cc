@@ -71,7 +71,9 @@ class ManifestTest : public testing::Test {
     dataset_.seed = 7;
     dataset_.class_paths = {"vessel", "vessel/mug"};
     dataset_.counts = {{"images", 2}, {"models", 1}};
-    dataset_.licences = {{"studio", "CC0-1.0"}};
+    dataset_.licences = {
+        {"CC0-1.0", "CC0 1.0 Universal\n", {"environments/studio", "models/mug.ply"}},
+        {"", "all mine", {"materials/red-plastic.mat"}}};
   }
 
   std::string read(const std::string& path) const { return read_text_file(folder_ / path); }
@@ -126,6 +128,39 @@ TEST_F(ManifestTest, NamesMendedModelsAndOnlyThose) {
   EXPECT_THROW(dataset_from_json(wrong.dump(), "d"), Error);
 }
 
+TEST_F(ManifestTest, HoldsEachLicenceOnce) {
+  const auto object = nlohmann::json::parse(to_json(dataset_));
+  ASSERT_EQ(object["licences"].size(), 2u);
+  EXPECT_EQ(object["licences"][0]["spdx"], "CC0-1.0");
+  EXPECT_EQ(object["licences"][0]["assets"].size(), 2u);
+  EXPECT_TRUE(object["licences"][1]["spdx"].is_null());
+  EXPECT_EQ(dataset_from_json(object.dump(), "d").licences, dataset_.licences);
+  for (const nlohmann::json& wrong :
+       {nlohmann::json("CC0-1.0"), nlohmann::json::array({1}),
+        nlohmann::json::array({{{"spdx", 1}, {"text", ""}, {"assets", nlohmann::json::array()}}}),
+        nlohmann::json::array({{{"spdx", nullptr}, {"text", ""}, {"assets", "mug.ply"}}})}) {
+    auto damaged = object;
+    damaged["licences"] = wrong;
+    EXPECT_THROW(dataset_from_json(damaged.dump(), "d"), Error) << wrong;
+  }
+}
+
+// What dsbuild wrote before format 2: the text beside each asset's name, whole floats as integers.
+TEST_F(ManifestTest, ReadsFormat1) {
+  auto object = nlohmann::json::parse(to_json(dataset_));
+  object["format"] = 1;
+  object["licences"] = {{"environments/studio", "CC0 1.0 Universal\n"},
+                        {"materials/red-plastic.mat", "all mine"},
+                        {"models/mug.ply", "CC0 1.0 Universal\n"}};
+  EXPECT_EQ(dataset_from_json(object.dump(), "d").licences, dataset_.licences);
+  auto line = nlohmann::json::parse(to_json_line(images_[0]));
+  line["lens_radius_m"] = 0;
+  line["camera_to_world"][0] = {0, 0, -1, 0.252};
+  const ImageRecord image = image_from_json_line(line.dump(), "images.jsonl", 1);
+  EXPECT_EQ(image.lens_radius_m, 0);
+  EXPECT_EQ(image.camera_to_world, images_[0].camera_to_world);
+}
+
 TEST_F(ManifestTest, DoesNotDependOnTheOrderOfTheImages) {
   write_manifest(folder_, dataset_, images_);
   const std::string lines = read("manifest/images.jsonl"), sums = read("manifest/checksums.xxh128");
@@ -139,8 +174,8 @@ TEST_F(ManifestTest, LinesAreCanonical) {
   const std::string line = to_json_line(images_[0]);
   EXPECT_THAT(line, HasSubstr("\"focus_distance_m\":0.30000000000000004,"));
   EXPECT_THAT(line, HasSubstr("\"seed\":9007199254740991,"));
-  EXPECT_THAT(line,
-              HasSubstr("\"camera_to_world\":[[0,0,-1,0.252],[1,0,0,0],[0,-1,0,0],[0,0,0,1]]"));
+  EXPECT_THAT(line, HasSubstr("\"camera_to_world\":[[0.0,0.0,-1.0,0.252],[1.0,0.0,0.0,0.0],"
+                              "[0.0,-1.0,0.0,0.0],[0.0,0.0,0.0,1.0]]"));
   EXPECT_THAT(line, HasSubstr("\"tone_map_scale\":0.3333333333333333,"));
   EXPECT_EQ(line.find(' '), line.npos);
   EXPECT_TRUE(line.starts_with("{\"camera_convention\":\"opencv\",\"camera_to_world\":"));
@@ -244,10 +279,13 @@ TEST_F(ManifestTest, SaysWhenItIsMissingOrOfAnotherFormat) {
 
 TEST(CanonicalJson, WritesEachNumberInItsShortestForm) {
   const nlohmann::json values = {0.1, -0.0, 1.0, 1e300, 5e-324, 123456789.125, 3, -7};
-  EXPECT_EQ(canonical_json(values), "[0.1,0,1,1e+300,5e-324,123456789.125,3,-7]");
+  EXPECT_EQ(canonical_json(values), "[0.1,0.0,1.0,1e+300,5e-324,123456789.125,3,-7]");
   const auto back = nlohmann::json::parse(canonical_json(values));
   for (std::size_t i = 0; i < values.size(); ++i)
-    EXPECT_EQ(back[i].get<double>(), values[i].get<double>());
+    EXPECT_EQ(back[i], values[i]);
+  // A reader that takes a column's type from a row gets the same from every row.
+  for (std::size_t i = 0; i < values.size(); ++i)
+    EXPECT_EQ(back[i].is_number_float(), i < 6) << values[i];
 }
 
 TEST(CanonicalJson, SortsKeysByBytesAndIndents) {
