@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/dataset_manifest.h"
 
+#include "builder/build/licence_files.h"
 #include "tracer/base/files.h"
 
 #include <algorithm>
@@ -17,34 +18,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* k_manifest_files[] = {"manifest/images.jsonl", "manifest/dataset.json",
                                             "manifest/checksums.xxh128"};
-/// Names a licence of a folder's files may have.
-constexpr const char* k_licence_files[] = {"LICENSE", "LICENCE", "LICENSE.txt", "LICENCE.txt",
-                                           "COPYING"};
-
-std::optional<std::string> licence_beside(const fs::path& asset) {
-  std::error_code error;
-  const fs::path folder = fs::is_directory(asset, error) ? asset : asset.parent_path();
-  for (const fs::path& place : {folder, folder.parent_path()})
-    for (const char* name : k_licence_files)
-      if (fs::is_regular_file(place / name, error)) return read_text_file(place / name);
-  return std::nullopt;
-}
-
-using LicenceTexts = std::vector<std::pair<std::string, std::string>>;  ///< asset, text
-
-void add_licences(LicenceTexts& texts, const char* kind, const std::vector<fs::path>& assets) {
-  std::map<fs::path, std::optional<std::string>>
-      known;  // one look a folder: there may be thousands of models
-  std::error_code error;
-  for (const fs::path& asset : assets) {
-    const fs::path folder = fs::is_directory(asset, error) ? asset : asset.parent_path();
-    const auto [entry, is_new] = known.try_emplace(folder);
-    if (is_new) entry->second = licence_beside(asset);
-    if (entry->second)
-      texts.emplace_back(fmt::format("{}/{}", kind, asset.filename().string()), *entry->second);
-  }
-}
-
 /// Hash of all the manifest is written from.
 Hash128 fingerprint(const DatasetRecord& dataset, const std::vector<ImageRecord>& images) {
   std::string text = to_json(dataset);
@@ -141,10 +114,14 @@ DatasetRecord dataset_record(const Recipe& recipe, const std::map<std::string, M
     record.counts.emplace_back(split, count);
   for (const auto& [model, what] : mended)
     if (models.contains(model)) record.mended_models.emplace_back(model, what.damage);
-  LicenceTexts texts;
-  add_licences(texts, "models", recipe.models);
-  add_licences(texts, "materials", recipe.materials);
-  add_licences(texts, "environments", recipe.environments);
+  std::vector<std::pair<std::string, std::string>> texts;
+  const auto add_licences = [&](const char* kind, const std::vector<fs::path>& assets) {
+    for (auto& licence : licences_beside(kind, assets))
+      texts.push_back(std::move(licence));
+  };
+  add_licences("models", recipe.models);
+  add_licences("materials", recipe.materials);
+  add_licences("environments", recipe.environments);
   record.licences = group_licences(texts);
   return record;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/disk.h"
 
-#include "tracer/base/error.h"
+#include "tracer/base/disk_error.h"
 #include "tracer/base/files.h"
 
 #include <system_error>
@@ -23,7 +23,7 @@ void RealDisk::link(const std::filesystem::path& from, const std::filesystem::pa
 void RealDisk::remove(const std::filesystem::path& file) {
   std::error_code error;
   std::filesystem::remove(file, error);
-  if (error) fail(ErrorKind::io, "{}: cannot remove: {}", file.string(), error.message());
+  if (error) fail_system(file, "remove", error.value());
 }
 
 }  // namespace ds

@@ -5,7 +5,7 @@
 #include "builder/build/host.h"
 #include "builder/build/killed_builds.h"
 #include "builder/build/placed_files.h"
-#include "tracer/base/error.h"
+#include "tracer/base/disk_error.h"
 
 #include <algorithm>
 #include <chrono>
@@ -65,6 +65,7 @@ class Execution {
   bool make_one(const PlannedImage& image);
   void fail_image(const PlannedImage& image, const std::string& why);
   void collect_failures();
+  bool is_in_place(PlacedFiles& placed, const PlannedImage& image);
   void finish();
   void remove_left_over();
   void log();
@@ -134,9 +135,11 @@ bool Execution::make_one(const PlannedImage& image) {
     observer_.image_done(image, work);
   } catch (const DamagedDatabase&) {
     throw;
+  } catch (const DiskFailed& error) {
+    // What it refuses one image it refuses the rest: tracing them would be for nothing.
+    disk_failed_ = true;
+    fail_image(image, error.what());
   } catch (const Error& error) {
-    // A disk that refuses one image refuses the rest: tracing them would be for nothing.
-    disk_failed_ = disk_failed_ || error.kind() == ErrorKind::io;
     if (error.kind() != ErrorKind::cancelled) fail_image(image, error.what());
   }
   return true;
@@ -175,8 +178,16 @@ void Execution::remove_left_over() {
   // lists.
   Database& database = *dataset_.database;
   std::set<fs::path> folders;
+  std::vector<std::string> removed;
   for (const std::string& path : plan_.to_remove) {
-    disk_.remove(dataset_.folder / path);
+    try {
+      disk_.remove(dataset_.folder / path);
+      removed.push_back(path);
+    } catch (const DiskFailed&) {
+      throw;
+    } catch (const Error& error) {  // tried again by the next build, and no reason to end this one
+      result_.failures.emplace_back(path, error.what());
+    }
     folders.insert((dataset_.folder / path).parent_path());
   }
   std::error_code not_empty;
@@ -186,11 +197,25 @@ void Execution::remove_left_over() {
   for (const PlannedImage& image : plan_.images)
     wanted.insert(image.spec.id);
   Transaction transaction(database.connection());
-  for (const std::string& path : plan_.to_remove)
+  for (const std::string& path : removed)
     database.remove_placed(dataset_.row.id, path);
   for (const auto& [id, parts] : database.images(dataset_.row.id))
     if (!wanted.contains(id)) database.remove_image(dataset_.row.id, id);
   transaction.commit();
+}
+
+/// Whether all files of the image are as they were placed; not where that cannot be told.
+bool Execution::is_in_place(PlacedFiles& placed, const PlannedImage& image) {
+  try {
+    return placed.all_in_place(image);
+  } catch (const DamagedDatabase&) {
+    throw;
+  } catch (const DiskFailed&) {
+    throw;
+  } catch (const Error& error) {
+    result_.failures.emplace_back(image.spec.id, error.what());
+    return false;
+  }
 }
 
 void Execution::finish() {
@@ -201,7 +226,7 @@ void Execution::finish() {
   PlacedFiles placed(dataset_);
   std::vector<ImageRecord> records;
   for (const PlannedImage& image : plan_.images) {
-    if (image.error || !placed.all_in_place(image)) continue;
+    if (image.error || !is_in_place(placed, image)) continue;
     const ImageRecord& record = records.emplace_back(image_record(image, *dataset_.database));
     if (record.film.capped && !image.elsewhere)
       result_.capped.emplace_back(record.id, record.film.developed_high.value_or(0));

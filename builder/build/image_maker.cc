@@ -192,6 +192,23 @@ void ImageMaker::place(const PlacedFile& file) {
   stamped_.push_back(std::move(stamped));
 }
 
+/// All of an image's files or none: what the manifest cannot list is not to lie there.
+void ImageMaker::place_all(const std::vector<PlacedFile>& files) {
+  const std::size_t before = stamped_.size();
+  try {
+    for (const PlacedFile& file : files)
+      place(file);
+  } catch (const Error&) {
+    for (; stamped_.size() > before; stamped_.pop_back()) {
+      try {
+        disk_.remove(dataset_.folder / stamped_.back().path);
+      } catch (const Error&) {  // what failed first is what the user is to hear of
+      }
+    }
+    throw;
+  }
+}
+
 /// What was made is recorded, so that it is not made again, but nothing is placed.
 void ImageMaker::refuse_over_limit(const Work& work, const Product& picture) {
   try {
@@ -218,8 +235,7 @@ ImageWork ImageMaker::make(const PlannedImage& image, bool force,
   if (!work.made.empty()) dataset_.store->put_record(to_record(work.made));
   if (picture) refuse_over_limit(work, *picture);
   commit(image, work.made, placed);
-  for (const PlacedFile& file : placed)
-    place(file);
+  place_all(placed);
   return work.done;
 }
 

@@ -66,6 +66,7 @@ class ImageMaker {
               const std::vector<PlacedFile>& placed);
   void refuse_over_limit(const Work& work, const Product& picture);
   void place(const PlacedFile& file);
+  void place_all(const std::vector<PlacedFile>& files);
   Renderer& renderer();
 
   Dataset& dataset_;

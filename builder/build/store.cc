@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/store.h"
 
-#include "tracer/base/error.h"
+#include "tracer/base/disk_error.h"
 #include "tracer/base/files.h"
 #include "tracer/base/log.h"
 
@@ -21,7 +21,7 @@ void make_read_only(const fs::path& file) {
   std::error_code error;
   fs::permissions(file, fs::perms::owner_read | fs::perms::group_read | fs::perms::others_read,
                   error);
-  if (error) fail(ErrorKind::io, "{}: cannot make read-only: {}", file.string(), error.message());
+  if (error) fail_system(file, "make read-only", error.value());
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ std::int64_t ns_of(const timespec& time) {
 std::optional<FileStamp> stamp_of(const std::filesystem::path& file) {
   struct stat status = {};
   if (::stat(file.c_str(), &status) != 0) {
-    if (errno == ENOENT || errno == ENOTDIR) return std::nullopt;
+    if (errno == ENOENT || errno == ENOTDIR || errno == ENAMETOOLONG) return std::nullopt;
     fail(ErrorKind::io, "{}: cannot look at the file: {}", file.string(),
          std::generic_category().message(errno));
   }

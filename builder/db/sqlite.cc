@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/db/sqlite.h"
 
+#include "tracer/base/disk_error.h"
 #include "tracer/base/files.h"
 
 #include <sqlite3.h>
@@ -62,7 +63,7 @@ void Connection::fail_sqlite(int code) const {
   const int primary = code & 0xff;
   if (primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB)
     throw DamagedDatabase(fmt::format("{}: the database is damaged: {}", name_, reason));
-  fail(ErrorKind::io, "{}: {}", name_, reason);
+  throw DiskFailed(fmt::format("{}: {}", name_, reason));
 }
 
 Statement Connection::prepare(const char* sql) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/files.h"
 
-#include "tracer/base/error.h"
+#include "tracer/base/disk_error.h"
 #include "tracer/base/hash.h"
 
 #include <atomic>
@@ -12,10 +12,11 @@
 #include <fstream>
 #include <iterator>
 #include <linux/fs.h>
+#include <random>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
-#include <system_error>
 #include <unistd.h>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -23,9 +24,13 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void fail_errno(const fs::path& path, const char* what) {
-  const int error = errno;
-  fail(ErrorKind::io, "{}: cannot {}: {}", path.string(), what,
-       std::generic_category().message(error));
+  fail_system(path, what, errno);
+}
+
+/// Tells the processes of several machines apart that share a folder.
+unsigned process_token() {
+  static const unsigned token = std::random_device{}();
+  return token;
 }
 
 /// An open file descriptor that closes itself; `close` reports what the destructor has to swallow.
@@ -58,11 +63,10 @@ class Descriptor {
 class TemporaryName {
  public:
   explicit TemporaryName(const fs::path& target) {
-    // Process and counter keep writers of one target apart; a crashed writer's leftover is simply
-    // overwritten.
+    // Without the target's name, which may be as long as names can be.
     static std::atomic<unsigned> counter{0};
-    path_ = target.parent_path() / fmt::format(".{}.{}.{}.tmp", target.filename().string(),
-                                               ::getpid(), counter.fetch_add(1));
+    path_ = target.parent_path() /
+            fmt::format(".{:08x}.{}.{}.tmp", process_token(), ::getpid(), counter.fetch_add(1));
   }
   ~TemporaryName() {
     if (!renamed_) ::unlink(path_.c_str());
@@ -98,9 +102,12 @@ void write_all(const Descriptor& file, const fs::path& path, std::span<const std
   }
 }
 
+/// As `process_token` makes them, two writers could still have one name; then this one fails.
+constexpr int k_write_new = O_WRONLY | O_CREAT | O_EXCL;
+
 bool reflink(const fs::path& from, const fs::path& to) {
   const Descriptor source(from, O_RDONLY);
-  Descriptor target(to, O_WRONLY | O_CREAT | O_TRUNC);
+  Descriptor target(to, k_write_new);
   const bool cloned = ::ioctl(target.get(), FICLONE, source.get()) == 0;
   if (cloned) target.sync();
   target.close();
@@ -122,8 +129,7 @@ std::string read_text_file(const fs::path& path) {
 void make_folders(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error)
-    fail(ErrorKind::io, "{}: cannot make the folder: {}", folder.string(), error.message());
+  if (error) fail_system(folder, "make the folder", error.value());
 }
 
 void sync_folder(const fs::path& folder) {
@@ -133,7 +139,7 @@ void sync_folder(const fs::path& folder) {
 void write_file_atomic(const fs::path& path, std::span<const std::byte> bytes) {
   const fs::path target = prepare_target(path);
   TemporaryName temporary(target);
-  Descriptor file(temporary.path(), O_WRONLY | O_CREAT | O_TRUNC);
+  Descriptor file(temporary.path(), k_write_new);
   write_all(file, target, bytes);
   file.sync();
   file.close();

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/files.h"
 
-#include "tracer/base/error.h"
+#include "tracer/base/disk_error.h"
 
 #include <gtest/gtest.h>
 
+#include <cerrno>
 #include <iterator>
 
 namespace ds {
@@ -43,6 +44,31 @@ TEST(FilesTest, linking_makes_equal_bytes_and_replaces) {
   EXPECT_EQ(entries(folder.path()), 2);
   EXPECT_THROW(link_file_atomic(folder.path() / "none", folder.path() / "to"), Error);
   EXPECT_EQ(read_text_file(folder.path() / "to"), "bytes");
+}
+
+TEST(FilesTest, every_name_the_system_takes_can_be_written) {
+  const TemporaryFolder folder;
+  const std::string longest(255, 'n'), too_long(256, 'n');
+  write_file_atomic(folder.path() / longest, "one");
+  write_file_atomic(folder.path() / "from", "two");
+  link_file_atomic(folder.path() / "from", folder.path() / longest);
+  EXPECT_EQ(read_text_file(folder.path() / longest), "two");
+  EXPECT_THROW(write_file_atomic(folder.path() / too_long, "one"), Error);
+  EXPECT_THROW(link_file_atomic(folder.path() / "from", folder.path() / too_long), Error);
+  EXPECT_EQ(entries(folder.path()), 2);
+}
+
+TEST(FilesTest, what_a_disk_refuses_to_all_names_is_told_apart) {
+  for (const int error : {ENOSPC, EDQUOT, EROFS, EIO})
+    EXPECT_THROW(fail_system("name", "write", error), DiskFailed);
+  for (const int error : {ENAMETOOLONG, EACCES, EPERM, ELOOP, EFBIG, EISDIR, ENOTDIR}) {
+    try {
+      fail_system("name", "write", error);
+    } catch (const DiskFailed&) {
+      FAIL() << error;
+    } catch (const Error&) {
+    }
+  }
 }
 
 TEST(FilesTest, reading_tells_the_path_and_the_reason) {
