@@ -3,6 +3,7 @@
 
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
+#include "tracer/base/text_lines.h"
 
 #include <algorithm>
 #include <charconv>
@@ -13,7 +14,7 @@ namespace ds {
 namespace {
 
 std::vector<std::string_view> split_words(std::string_view line) {
-  constexpr std::string_view k_blank = " \t\r\v\f";
+  constexpr std::string_view k_blank = " \t\v\f";
   std::vector<std::string_view> words;
   for (std::size_t at = line.find_first_not_of(k_blank); at != line.npos;) {
     const std::size_t end = line.find_first_of(k_blank, at);
@@ -38,11 +39,14 @@ class Parser {
   explicit Parser(const std::string& file) : diagnostics_(ErrorKind::asset) { result_.file = file; }
 
   Classification parse(std::string_view text) {
+    if (is_utf16(text)) {
+      diagnostics_.add({result_.file}, "{}", k_utf16_message);
+      diagnostics_.throw_if_any();
+    }
+    text = without_bom(text);
     while (!text.empty()) {
-      const std::size_t end = text.find('\n');
       ++line_;
-      if (const auto words = split_words(text.substr(0, end)); !words.empty()) read_line(words);
-      text.remove_prefix(end == text.npos ? text.size() : end + 1);
+      if (const auto words = split_words(take_line(text)); !words.empty()) read_line(words);
     }
     close_class();
     check_totals();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/recipe/value.h"
 
+#include "tracer/base/text_lines.h"
+
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
@@ -28,6 +30,20 @@ std::size_t longest_dotted_key(std::string_view text) {
     previous = c;
   }
   return most;
+}
+
+/// Every line ends with "\n": TOML knows no other end but "\r\n".
+std::string with_newlines(std::string_view text) {
+  text = without_bom(text);
+  std::string lines;
+  lines.reserve(text.size());
+  while (!text.empty()) {
+    const std::string_view before = text;
+    const std::string_view line = take_line(text);
+    lines += line;
+    if (line.size() < before.size()) lines += '\n';
+  }
+  return lines;
 }
 
 SourcePlace place_of(const toml::source_region& region, const std::string& file) {
@@ -149,13 +165,18 @@ std::string to_toml(const RecipeValue& value) {
   return digits;
 }
 
-RecipeValue::Table parse_recipe_text(std::string_view text, const std::string& file,
+RecipeValue::Table parse_recipe_text(std::string_view bytes, const std::string& file,
                                      Diagnostics& diagnostics) {
-  if (text.size() > k_max_bytes) {
+  if (bytes.size() > k_max_bytes) {
     diagnostics.add({file, 0, 0}, "a recipe must be at most {} bytes, got {}", k_max_bytes,
-                    text.size());
+                    bytes.size());
     return {};
   }
+  if (is_utf16(bytes)) {
+    diagnostics.add({file, 0, 0}, "{}", k_utf16_message);
+    return {};
+  }
+  const std::string text = with_newlines(bytes);
   if (const std::size_t parts = longest_dotted_key(text); parts > k_max_key_parts) {
     diagnostics.add({file, 0, 0}, "a key must have at most {} parts, got {}", k_max_key_parts,
                     parts);

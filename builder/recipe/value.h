@@ -37,9 +37,10 @@ struct RecipeValue {
 std::string to_toml(const RecipeValue& value);
 std::string to_toml(std::string_view text);
 
-/// Reads a TOML document. `file` stands in the places. A syntax error (or a date, which no key
-/// takes) is a finding, and then the table is empty.
-RecipeValue::Table parse_recipe_text(std::string_view text, const std::string& file,
+/// Reads a TOML document, with any line ends and with or without a byte order mark. `file` stands
+/// in the places. A syntax error (or a date, which no key takes) is a finding, and then the table
+/// is empty.
+RecipeValue::Table parse_recipe_text(std::string_view bytes, const std::string& file,
                                      Diagnostics& diagnostics);
 
 /// Puts "key.path=value" into `recipe`: the text behind the first "=" as a TOML value, or as a

@@ -24,6 +24,20 @@ TEST(RecipeValue, HasOneSpelling) {
       "{a = \"x\\\"\\\\\", b = 16, s = {f = 100.0, g = [1, 2.5, [true]], h = {y = nan, z = inf}}}");
 }
 
+TEST(RecipeValue, TakesAnyLineEndAndAByteOrderMark) {
+  for (const std::string end : {"\n", "\r\n", "\r"})
+    EXPECT_EQ(parsed("\xef\xbb\xbf"
+                     "# a remark" +
+                     end + "[s]" + end + end + "a.b = 1" + end + "c.d = 2"),
+              "{s = {a = {b = 1}, c = {d = 2}}}");
+  EXPECT_TRUE(parsed("a = 1\rb = = 2\r").starts_with("r.toml:2:5: must be TOML: "));
+  EXPECT_EQ(parsed("\xff\xfe"), "r.toml: must be UTF-8, found UTF-16");
+  std::string dotted = "[a]";
+  for (int i = 0; i < 40; ++i)
+    dotted += fmt::format("\rx{}.y = 1", i);
+  EXPECT_EQ(parsed(dotted).substr(0, 5), "{a = ");
+}
+
 TEST(RecipeValue, KnowsLineAndColumnOfValuesElementsAndSections) {
   Diagnostics diagnostics(ErrorKind::recipe);
   const auto tree = parse_recipe_text("[camera]\nfov_deg = 49\nviews = [1,\n  2]\n[outputs]\n",

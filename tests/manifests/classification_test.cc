@@ -49,6 +49,19 @@ TEST(Classification, TakesCarriageReturnsTabsAndNoFinalLineBreak) {
   EXPECT_THAT(read.classes[0].models, ElementsAre("7"));
 }
 
+TEST(Classification, TakesAnyLineEndAndAByteOrderMark) {
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    std::string text = "\xef\xbb\xbf";
+    for (const char* line : {"PSB 1", "1 2", "", "cup 0 2", "7"})
+      text += line + end;
+    const Classification read = parse_classification(text + "8", "a.cla");
+    ASSERT_EQ(read.classes.size(), 1u);
+    EXPECT_THAT(read.classes[0].models, ElementsAre("7", "8"));
+    EXPECT_THAT(read.classes[0].model_lines, ElementsAre(5, 6));
+  }
+  EXPECT_EQ(findings("\xff\xfeP"), "a.cla: must be UTF-8, found UTF-16");
+}
+
 TEST(Classification, NamesTheLineOfEachWrongCount) {
   EXPECT_EQ(findings("PSB 1\n2 3\n\na 0 2\n1\n\nb 0 1\n2\n3\n"),
             "a.cla:4: class a must hold 2 models as it says, found 1\n"

@@ -2,6 +2,7 @@
 #include "tracer/scene/properties.h"
 
 #include "tracer/base/files.h"
+#include "tracer/base/text_lines.h"
 
 #include <algorithm>
 #include <optional>
@@ -86,13 +87,13 @@ bool starts_with_part(std::string_view name, std::string_view prefix) {
 PropertySet PropertySet::parse(std::string_view text, const std::string& file,
                                Diagnostics& diagnostics) {
   PropertySet set;
-  int line_number = 0;
-  while (!text.empty()) {
-    ++line_number;
-    const std::size_t end = text.find('\n');
-    std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  if (is_utf16(text)) {
+    diagnostics.add({file}, "{}", k_utf16_message);
+    return set;
+  }
+  text = without_bom(text);
+  for (int line_number = 1; !text.empty(); ++line_number) {
+    const std::string_view line = take_line(text);
     if (trim(line).empty() || trim(line).front() == '#') continue;
 
     Property property;

@@ -51,6 +51,34 @@ TEST(Properties, CommentsAndBlankLinesAreSkipped) {
   EXPECT_EQ(set.find("c")->place.line, 5);
 }
 
+TEST(Properties, AnyLineEndAndAByteOrderMarkAreRead) {
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    Diagnostics diagnostics(ErrorKind::asset);
+    const PropertySet set = PropertySet::parse(
+        "\xef\xbb\xbf"
+        "a.b = 1" +
+            end + end + "a.c = 2 3" + end + "a.d = \"x\"",
+        "a.mat", diagnostics);
+    EXPECT_TRUE(diagnostics.empty());
+    ASSERT_NE(set.find("a.b"), nullptr);
+    ASSERT_NE(set.find("a.d"), nullptr);
+    EXPECT_THAT(set.find("a.c")->values, ElementsAre("2", "3"));
+    EXPECT_EQ(set.find("a.d")->place.line, 4);
+    EXPECT_THAT(set.find("a.d")->values, ElementsAre("x"));
+  }
+}
+
+TEST(Properties, Utf16IsRefusedByName) {
+  for (const char* text : {"\xff\xfe"
+                           "a\n",
+                           "\xfe\xff"
+                           "a\n"}) {
+    Diagnostics diagnostics(ErrorKind::asset);
+    PropertySet::parse(text, "a.mat", diagnostics);
+    EXPECT_THAT(diagnostics.lines(), ElementsAre("a.mat: must be UTF-8, found UTF-16"));
+  }
+}
+
 TEST(Properties, ALaterLineReplacesTheValueAndKeepsThePosition) {
   Diagnostics diagnostics(ErrorKind::asset);
   const PropertySet set =
