@@ -3,11 +3,16 @@
 
 #include "builder/recipe/recipe.h"
 #include "manifests/json_text.h"
+#include "tracer/base/log.h"
 
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <set>
+#include <sys/stat.h>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 namespace ds {
 namespace {
@@ -72,16 +77,109 @@ bool fits_manifest(const std::string& name) {
   return !odd;
 }
 
-/// Entries of a folder that `belongs`, hidden ones left out.
-template <typename Iterator>
-std::vector<fs::path> list_folder(const fs::path& folder, const AssetKind& kind,
-                                  std::error_code& error) {
-  std::vector<fs::path> found;
-  for (Iterator at(folder, error), end; !error && at != end; at.increment(error)) {
-    const fs::path& path = at->path();
-    if (!file_name(path).starts_with('.') && kind.belongs(path)) found.push_back(path);
+/// What a folder holds, hidden entries left out.
+struct Listing {
+  std::vector<fs::path> found;                ///< what belongs
+  std::map<std::string, std::size_t> others;  ///< files that do not, by ending
+  std::size_t dead_links = 0;
+  std::size_t unread_folders = 0;  ///< that hold what would belong
+};
+
+/// Texts that may lie beside what belongs without being meant for anything.
+bool is_remark(const fs::path& path) {
+  std::string name = file_name(path);
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return name.starts_with("LICENSE") || name.starts_with("LICENCE") ||
+         name.starts_with("COPYING") || name.starts_with("NOTICE") || name.starts_with("README") ||
+         name.ends_with(".CLA");
+}
+
+/// Looks into a folder, in the order of names, and with `recursive` into those in it, links
+/// followed: each once, by whatever way it is reached, so that links may lead round.
+class FolderWalk {
+ public:
+  FolderWalk(const AssetKind& kind, bool recursive) : kind_(kind), recursive_(recursive) {}
+
+  Listing list(const fs::path& folder, std::error_code& error) {
+    first_visit(folder);
+    walk(folder, error);
+    return std::move(listing_);
   }
-  return found;
+
+ private:
+  static std::vector<fs::path> entries(const fs::path& folder, std::error_code& error) {
+    std::vector<fs::path> paths;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+      if (!file_name(at->path()).starts_with('.')) paths.push_back(at->path());
+    std::sort(paths.begin(), paths.end());
+    return paths;
+  }
+
+  bool first_visit(const fs::path& folder) {
+    struct stat status {};
+    if (::stat(folder.c_str(), &status) != 0) return false;
+    return seen_.emplace(status.st_dev, status.st_ino).second;
+  }
+
+  void walk(const fs::path& folder, std::error_code& error) {
+    for (const fs::path& path : entries(folder, error)) {
+      std::error_code ignored;
+      if (kind_.belongs(path))
+        listing_.found.push_back(path);
+      else if (fs::is_symlink(path, ignored) && !fs::exists(path, ignored))
+        ++listing_.dead_links;
+      else if (fs::is_directory(path, ignored))
+        enter(path, error);
+      else if (!is_remark(path))
+        ++listing_.others[path.extension().string()];
+      if (error) return;
+    }
+  }
+
+  void enter(const fs::path& folder, std::error_code& error) {
+    if (!first_visit(folder)) return;
+    if (recursive_)
+      walk(folder, error);
+    else if (kind_.section == "models" && holds_one(folder))
+      ++listing_.unread_folders;
+  }
+
+  /// Up to the first that belongs.
+  bool holds_one(const fs::path& folder) {
+    std::error_code ignored;
+    for (const fs::path& path : entries(folder, ignored)) {
+      if (kind_.belongs(path)) return true;
+      if (fs::is_directory(path, ignored) && first_visit(path) && holds_one(path)) return true;
+    }
+    return false;
+  }
+
+  const AssetKind& kind_;
+  bool recursive_;
+  Listing listing_;
+  std::set<std::pair<dev_t, ino_t>> seen_;
+};
+
+/// What of a folder is not used, in words; empty: nothing worth a word.
+std::string unused_text(const Listing& listing, const AssetKind& kind) {
+  std::vector<std::string> parts;
+  if (!listing.others.empty() && kind.section == "models") {
+    std::size_t count = 0;
+    std::vector<std::string> endings;
+    for (const auto& [ending, files] : listing.others) {
+      count += files;
+      endings.push_back(fmt::format("{} {}", files, ending.empty() ? "without" : ending));
+    }
+    parts.push_back(fmt::format("{} files of other endings ({}); .ply and .off are read", count,
+                                fmt::join(endings, ", ")));
+  }
+  if (listing.dead_links > 0)
+    parts.push_back(fmt::format("{} links that lead nowhere", listing.dead_links));
+  if (listing.unread_folders > 0)
+    parts.push_back(fmt::format("{} folders that hold models; models.recursive = true reads them",
+                                listing.unread_folders));
+  return fmt::format("{}", fmt::join(parts, "; "));
 }
 
 class Finder {
@@ -139,19 +237,20 @@ class Finder {
     const fs::path folder = settings_.resolve(dir);
     std::error_code error;
     const bool recursive = kind_.section == "models" && settings_.boolean("models.recursive");
-    const auto paths = recursive
-                           ? list_folder<fs::recursive_directory_iterator>(folder, kind_, error)
-                           : list_folder<fs::directory_iterator>(folder, kind_, error);
+    const Listing listing = FolderWalk(kind_, recursive).list(folder, error);
+    const std::string unused = unused_text(listing, kind_);
     if (error) {
       settings_.complain(
           dir, dir_key_,
           fmt::format("must be a folder, found {}: {}", folder.string(), error.message()));
-    } else if (paths.empty()) {
-      settings_.complain(
-          dir, dir_key_,
-          fmt::format("must hold a {}, found none in {}", kind_.wanted_in_folder, folder.string()));
+    } else if (listing.found.empty()) {
+      settings_.complain(dir, dir_key_,
+                         fmt::format("must hold a {}, found none in {}{}{}", kind_.wanted_in_folder,
+                                     folder.string(), unused.empty() ? "" : ", but ", unused));
+    } else if (!unused.empty()) {
+      warn(fmt::format("{}: not used of {}: {}", dir_key_, folder.string(), unused));
     }
-    for (const fs::path& path : paths)
+    for (const fs::path& path : listing.found)
       add(dir, dir_key_, path);
   }
 

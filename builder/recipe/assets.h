@@ -9,9 +9,11 @@
 namespace ds {
 
 /// Model files: models.files, or the .ply and .off files (in any case) of models.dir but for hidden
-/// ones; sorted by file name. Every problem is a finding: neither or both keys given, nothing
-/// found, no such file, one name twice, a name that a manifest cannot hold (control characters, a
-/// backslash, not UTF-8).
+/// ones; sorted by file name. Folders that links lead to are looked into as others are, each folder
+/// once. What models.dir holds besides (files of other endings, links that lead nowhere, folders
+/// with models that models.recursive would read) is counted in a warning. Every problem is a
+/// finding: neither or both keys given, nothing found, no such file, one name twice, a name that a
+/// manifest cannot hold (control characters, a backslash, not UTF-8).
 std::vector<std::filesystem::path> find_models(Settings& settings);
 /// Material files: materials.files, or the .mat files of materials.dir.
 std::vector<std::filesystem::path> find_materials(Settings& settings);

@@ -248,6 +248,49 @@ TEST_F(RecipeReadTest, RefusesTwoModelsOfOneName) {
             "models/deeper/mug.off and models/mug.off");
 }
 
+/// What reading warns of, the folder's own name taken out.
+std::string warnings(const RecipeFolder& folder, std::string_view text) {
+  testing::internal::CaptureStderr();
+  folder.read(text);
+  std::string said = testing::internal::GetCapturedStderr();
+  for (std::size_t at = 0; (at = said.find(folder.path().string(), at)) != said.npos;)
+    said.erase(at, folder.path().string().size() + 1);
+  return said;
+}
+
+TEST_F(RecipeReadTest, CountsWhatIsNotUsedOfTheModelsFolder) {
+  fs::remove(folder_.path() / "models/notes.txt");
+  folder_.add("models/LICENSE");
+  EXPECT_EQ(warnings(folder_, ""), "");
+  folder_.add("models/a.obj");
+  folder_.add("models/b.obj");
+  folder_.add("models/c.STL");
+  folder_.add("models/deeper/again/vase.off");
+  folder_.add("models/empty/words.txt");
+  fs::create_symlink("nowhere.ply", folder_.path() / "models/gone.ply");
+  EXPECT_EQ(warnings(folder_, ""),
+            "dsbuild: warning: models.dir: not used of models: 3 files of other endings (1 .STL, 2 "
+            ".obj); .ply and .off are read; 1 links that lead nowhere; 1 folders that hold models; "
+            "models.recursive = true reads them\n");
+  EXPECT_EQ(warnings(folder_, "models.recursive = true"),
+            "dsbuild: warning: models.dir: not used of models: 4 files of other endings (1 .STL, 2 "
+            ".obj, 1 .txt); .ply and .off are read; 1 links that lead nowhere\n");
+  const RecipeFolder other;
+  other.add("deep/a/b.off");
+  EXPECT_THAT(other.findings("", {"models.dir=" + (other.path() / "deep").string()}),
+              HasSubstr("found none in deep, but 1 folders that hold models; models.recursive"));
+}
+
+TEST_F(RecipeReadTest, FollowsLinkedFoldersOnce) {
+  const RecipeFolder other;
+  other.add("far/vase.ply");
+  fs::create_directory_symlink(other.path() / "far", folder_.path() / "models/a");
+  fs::create_directory_symlink(other.path() / "far", folder_.path() / "models/b");
+  fs::create_directory_symlink("..", folder_.path() / "models/round");
+  EXPECT_THAT(names(folder_.read("models.recursive = true").models),
+              ElementsAre("car.ply", "mug.off", "tree.PLY", "vase.ply"));
+}
+
 TEST_F(RecipeReadTest, RefusesNamesThatAManifestCannotHold) {
   folder_.add("models/bad\nname.ply");
   EXPECT_THAT(folder_.findings(""),
