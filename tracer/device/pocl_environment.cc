@@ -9,8 +9,10 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <mutex>
 #include <string_view>
+#include <system_error>
 #include <unistd.h>
 #include <vector>
 
@@ -22,12 +24,27 @@ void set_unless_set(const char* name, const std::string& value) {
     fail(ErrorKind::io, "cannot set {}: {}", name, std::strerror(errno));
 }
 
+/// PoCL offers no device, without a word why, where it cannot write into its cache.
+void check_cache_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error && !std::filesystem::is_directory(folder, error))
+    error = std::make_error_code(std::errc::not_a_directory);
+  if (!error && ::access(folder.c_str(), R_OK | W_OK | X_OK) != 0)
+    error = {errno, std::generic_category()};
+  if (error)
+    fail(ErrorKind::device, "POCL_CACHE_DIR = {} cannot be used: {}", folder.string(),
+         error.message());
+}
+
 }  // namespace
 
 void prepare_pocl_environment() {
   static std::once_flag once;
   std::call_once(once, [] {
-    if (std::getenv("POCL_CACHE_DIR") == nullptr)
+    if (const char* const given = std::getenv("POCL_CACHE_DIR"))
+      check_cache_folder(given);
+    else
       set_unless_set("POCL_CACHE_DIR",
                      make_process_folder(default_cache_folder() / "pocl").string());
     set_unless_set("POCL_KERNEL_CACHE", "0");

@@ -21,7 +21,8 @@ namespace ds {
 ///
 /// Must come before the first OpenCL call of the process; later calls do nothing. It calls setenv:
 /// no other thread may use the environment meanwhile. Folders of processes that have ended are
-/// removed. Throws Error(io).
+/// removed. Throws Error(io), and Error(device) with the variable's name where the POCL_CACHE_DIR
+/// that is set is no folder that can be read and written.
 void prepare_pocl_environment();
 
 /// The variables that can change what PoCL compiles, sorted, one "NAME=value" a line.
