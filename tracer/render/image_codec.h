@@ -5,7 +5,6 @@
 #include "tracer/render/image_files.h"
 
 #include <cstddef>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,13 +15,14 @@ namespace ds {
 /// brings 250 libraries, and loading them takes 0.3 s, ten times what else a command does at its
 /// start: so it is a module that is loaded at the first image read or written.
 struct ImageCodec {
-  DecodedImage (*decode_file)(const std::filesystem::path& file, Halves halves);
-  DecodedImage (*decode_bytes)(std::span<const std::byte> bytes, const std::string& name,
-                               Halves halves);
+  /// `format` is what check_image_claims found.
+  DecodedImage (*decode_bytes)(std::span<const std::byte> bytes, const std::string& format,
+                               const std::string& name, Halves halves);
   std::vector<std::byte> (*encode_png)(const Picture& picture);
   std::vector<std::byte> (*encode_depth_exr)(const Geometry& geometry);
   std::vector<std::byte> (*encode_film_exr)(const Film& film);
-  Film (*decode_film_exr)(const std::vector<std::byte>& bytes, const std::string& name);
+  Film (*decode_film_exr)(const std::vector<std::byte>& bytes, const std::string& format,
+                          const std::string& name);
 };
 
 /// What the module dsbuild_images exports.

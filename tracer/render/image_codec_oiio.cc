@@ -2,6 +2,7 @@
 // Every use of OpenImageIO: encoded pictures and films out, image files in. A module of its own:
 // see image_codec.h.
 #include "tracer/base/error.h"
+#include "tracer/render/image_claims.h"
 #include "tracer/render/image_codec.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -10,14 +11,12 @@
 #include <algorithm>
 #include <charconv>
 #include <mutex>
+#include <new>
 #include <string_view>
 
 namespace ds {
 namespace {
 
-namespace fs = std::filesystem;
-
-constexpr std::uint64_t k_max_pixels = std::uint64_t{1} << 28;
 constexpr const char* k_rejected_attribute = "dsbuild:rejectedSamples";
 constexpr const char* k_error_attribute = "dsbuild:relativeError";
 
@@ -89,33 +88,43 @@ OIIO::ImageSpec reading_options() {
   return options;
 }
 
-DecodedImage decode(OIIO::ImageInput& input, const std::string& name, Halves halves) {
+/// Of a file of `file_bytes`.
+DecodedImage decode(OIIO::ImageInput& input, const std::string& name, Halves halves,
+                    std::size_t file_bytes) {
   const OIIO::ImageSpec spec = input.spec();
-  const bool sizes_good = spec.width > 0 && spec.height > 0 && spec.depth <= 1 && !spec.deep;
-  if (!sizes_good || spec.image_pixels() > k_max_pixels)
-    fail(ErrorKind::asset, "{}: wanted an image of 1 to {} pixels, found {} x {}{}", name,
-         k_max_pixels, spec.width, spec.height, spec.deep ? ", deep" : "");
-  if (spec.nchannels < 1 || spec.nchannels > 4)
-    fail(ErrorKind::asset, "{}: wanted 1 to 4 channels, found {}", name, spec.nchannels);
+  const std::uint64_t most = believable_pixels(file_bytes);
+  const auto believable = [&](int width, int height) {
+    const auto w = static_cast<std::uint64_t>(width), h = static_cast<std::uint64_t>(height);
+    return width > 0 && height > 0 && w <= most && h <= most && w * h <= most;
+  };
+  const bool tiles_good =
+      spec.tile_width == 0 || believable(spec.tile_width, std::max(spec.tile_height, 1));
+  if (!believable(spec.width, spec.height) || !tiles_good || spec.depth > 1 || spec.deep)
+    fail(ErrorKind::asset, "{}: wanted an image of 1 to {} pixels in {} bytes, found {} x {}{}",
+         name, most, file_bytes, spec.width, spec.height, spec.deep ? ", deep" : "");
   const std::optional<SampleType> type = sample_type(spec.format);
   if (!type)
     fail(ErrorKind::asset, "{}: wanted samples of type uint8, uint16, half or float, found {}",
          name, spec.format.c_str());
-  DecodedImage decoded{spec.width, spec.height, spec.nchannels, spec.alpha_channel, *type, {}};
+  // Red, green, blue and alpha come first.
+  constexpr int k_most_channels = 4;
+  const int channels = std::min(spec.nchannels, k_most_channels);
+  DecodedImage decoded;
+  decoded.width = spec.width;
+  decoded.height = spec.height;
+  decoded.channels = channels;
+  decoded.alpha_channel = spec.alpha_channel < channels ? spec.alpha_channel : -1;
+  decoded.type = *type;
+  decoded.channel_names = spec.channelnames;
+  decoded.orientation = spec.get_int_attribute("Orientation", 1);
   if (halves == Halves::widen && decoded.type == SampleType::half)
     decoded.type = SampleType::float32;
   const OIIO::TypeDesc format = library_type(decoded.type);
   decoded.samples.resize(static_cast<std::size_t>(spec.image_pixels()) *
-                         static_cast<std::size_t>(spec.nchannels) * format.size());
-  if (!input.read_image(0, 0, 0, spec.nchannels, format, decoded.samples.data()))
+                         static_cast<std::size_t>(channels) * format.size());
+  if (!input.read_image(0, 0, 0, channels, format, decoded.samples.data()))
     fail(ErrorKind::asset, "{}: cannot read the pixels: {}", name, one_line(input.geterror()));
   return decoded;
-}
-
-bool starts_with(std::span<const std::byte> bytes, std::string_view magic) {
-  return bytes.size() >= magic.size() &&
-         std::equal(magic.begin(), magic.end(), bytes.begin(),
-                    [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
 }
 
 /// A number that `film_exr` wrote beside the pixels.
@@ -131,16 +140,32 @@ Number film_number(const OIIO::ImageSpec& spec, const char* attribute, const std
   return number;
 }
 
+/// Calls `read`; whatever the libraries below throw becomes an error with the file's name.
+template <typename Read>
+auto guarded(const std::string& name, const Read& read) {
+  const char* what = "unknown error";
+  std::string text;
+  try {
+    return read();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    what = "not enough memory";
+  } catch (const std::exception& error) {
+    text = one_line(error.what());
+    what = text.c_str();
+  } catch (...) {  // what is no std::exception, a library's own
+  }
+  fail(ErrorKind::asset, "{}: cannot be read as an image: {}", name, what);
+}
+
 /// An open reader on bytes in memory.
 class MemoryInput {
  public:
-  MemoryInput(std::span<const std::byte> bytes, const std::string& name)
+  /// By a format's name alone: given a file name, the library looks for that file.
+  MemoryInput(std::span<const std::byte> bytes, const std::string& format, const std::string& name)
       : reader_(bytes.data(), bytes.size()) {
     set_up_library();
-    const bool png = starts_with(bytes, "\x89PNG"), exr = starts_with(bytes, "\x76\x2f\x31\x01");
-    if (!png && !exr) fail(ErrorKind::asset, "{}: wanted a PNG or EXR file, found neither", name);
-    // By a format's name alone: given a file name, the library looks for that file.
-    const char* format = png ? "png" : "openexr";
     input_ = OIIO::ImageInput::create(format);
     OIIO::ImageSpec spec;
     if (!input_ || !input_->set_ioproxy(&reader_) || !input_->open(format, spec, reading_options()))
@@ -154,23 +179,12 @@ class MemoryInput {
   std::unique_ptr<OIIO::ImageInput> input_;
 };
 
-DecodedImage decode_file(const fs::path& file, Halves halves) {
-  set_up_library();
-  std::error_code error;
-  if (!fs::is_regular_file(file, error))
-    fail(ErrorKind::asset, "{}: wanted an image file, found none", file.string());
-  const OIIO::ImageSpec options = reading_options();
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), &options);
-  if (!input)
-    fail(ErrorKind::asset, "{}: cannot be read as an image: {}", file.string(),
-         one_line(OIIO::geterror()));
-  return decode(*input, file.string(), halves);
-}
-
-DecodedImage decode_bytes(std::span<const std::byte> bytes, const std::string& name,
-                          Halves halves) {
-  MemoryInput memory(bytes, name);
-  return decode(memory.input(), name, halves);
+DecodedImage decode_bytes(std::span<const std::byte> bytes, const std::string& format,
+                          const std::string& name, Halves halves) {
+  return guarded(name, [&] {
+    MemoryInput memory(bytes, format, name);
+    return decode(memory.input(), name, halves, bytes.size());
+  });
 }
 
 std::vector<std::byte> png(const Picture& picture) {
@@ -198,27 +212,30 @@ std::vector<std::byte> film_exr(const Film& film) {
   return encode("exr", spec, film.rgb.data());
 }
 
-Film film_of_exr(const std::vector<std::byte>& bytes, const std::string& name) {
-  MemoryInput memory(bytes, name);
-  const DecodedImage decoded = decode(memory.input(), name, Halves::keep);
-  if (decoded.channels != 3 || decoded.type != SampleType::float32)
-    fail(ErrorKind::asset, "{}: no film of ours: wanted 3 channels of float, found {} of {}", name,
-         decoded.channels, sample_type_name(decoded.type));
-  Film film{
-      decoded.width, decoded.height, std::vector<float>(decoded.samples.size() / sizeof(float)),
-      film_number<std::uint64_t>(memory.input().spec(), k_rejected_attribute, name), std::nullopt};
-  if (memory.input().spec().find_attribute(k_error_attribute) != nullptr)
-    film.relative_error = film_number<double>(memory.input().spec(), k_error_attribute, name);
-  std::copy(decoded.samples.begin(), decoded.samples.end(),
-            std::as_writable_bytes(std::span(film.rgb)).begin());
-  return film;
+Film film_of_exr(const std::vector<std::byte>& bytes, const std::string& format,
+                 const std::string& name) {
+  return guarded(name, [&] {
+    MemoryInput memory(bytes, format, name);
+    const DecodedImage decoded = decode(memory.input(), name, Halves::keep, bytes.size());
+    if (decoded.channels != 3 || decoded.type != SampleType::float32)
+      fail(ErrorKind::asset, "{}: no film of ours: wanted 3 channels of float, found {} of {}",
+           name, decoded.channels, sample_type_name(decoded.type));
+    Film film{decoded.width, decoded.height,
+              std::vector<float>(decoded.samples.size() / sizeof(float)),
+              film_number<std::uint64_t>(memory.input().spec(), k_rejected_attribute, name),
+              std::nullopt};
+    if (memory.input().spec().find_attribute(k_error_attribute) != nullptr)
+      film.relative_error = film_number<double>(memory.input().spec(), k_error_attribute, name);
+    std::copy(decoded.samples.begin(), decoded.samples.end(),
+              std::as_writable_bytes(std::span(film.rgb)).begin());
+    return film;
+  });
 }
 
 }  // namespace
 
 extern "C" const ImageCodec* dsbuild_image_codec() {
-  static constexpr ImageCodec codec{decode_file, decode_bytes, png,
-                                    depth_exr,   film_exr,     film_of_exr};
+  static constexpr ImageCodec codec{decode_bytes, png, depth_exr, film_exr, film_of_exr};
   return &codec;
 }
 

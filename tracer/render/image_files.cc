@@ -4,6 +4,7 @@
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
 #include "tracer/render/develop.h"
+#include "tracer/render/image_claims.h"
 #include "tracer/render/image_codec.h"
 
 #include <dlfcn.h>
@@ -39,13 +40,17 @@ const ImageCodec& codec() {
 
 }  // namespace
 
-DecodedImage decode_image_file(const fs::path& file, Halves halves) {
-  return codec().decode_file(file, halves);
+std::string read_image_file(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error))
+    fail(ErrorKind::asset, "{}: wanted an image file, found none", file.string());
+  return read_text_file(file);
 }
 
 DecodedImage decode_image_bytes(std::span<const std::byte> bytes, const std::string& name,
                                 Halves halves) {
-  return codec().decode_bytes(bytes, name, halves);
+  const std::string format = check_image_claims(bytes, name);
+  return codec().decode_bytes(bytes, format, name, halves);
 }
 
 std::vector<std::byte> encode_png(const Picture& picture) {
@@ -61,7 +66,8 @@ std::vector<std::byte> encode_film_exr(const Film& film) {
 }
 
 Film decode_film_exr(const std::vector<std::byte>& bytes, const std::string& name) {
-  return codec().decode_film_exr(bytes, name);
+  const std::string format = check_image_claims(bytes, name);
+  return codec().decode_film_exr(bytes, format, name);
 }
 
 Hash128 pixel_hash(const std::vector<std::byte>& encoded, const std::string& name) {

@@ -5,11 +5,15 @@
 #include "tracer/base/hash.h"
 #include "tracer/base/log.h"
 #include "tracer/render/image_files.h"
+#include "tracer/render/image_meaning.h"
 #include "tracer/render/strict_math.h"
 
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace ds {
 namespace {
@@ -32,34 +36,51 @@ T sample(const DecodedImage& decoded, std::size_t index) {
   return value;
 }
 
-/// All samples as linear floats, alpha without gamma.
-std::vector<float> linear_samples(const DecodedImage& decoded, float gamma) {
-  const auto channels = static_cast<std::size_t>(decoded.channels);
-  const std::size_t count =
-      static_cast<std::size_t>(decoded.width) * static_cast<std::size_t>(decoded.height) * channels;
-  const auto alpha =
-      static_cast<std::size_t>(decoded.alpha_channel);  // -1 becomes a channel there is none of
-  std::vector<float> values(count);
-  if (decoded.type == SampleType::float32) {
-    for (std::size_t i = 0; i < count; ++i)
-      values[i] = sample<float>(decoded, i);
-    return values;
+/// Stored samples as linear floats, alpha without gamma.
+class LinearSamples {
+ public:
+  LinearSamples(const DecodedImage& decoded, float gamma) : decoded_(decoded) {
+    if (decoded.type == SampleType::float32) return;
+    const std::size_t levels = decoded.type == SampleType::uint16 ? 65536 : 256;
+    color_ = gamma_table(levels, gamma);
+    straight_ = gamma_table(levels, 1.0f);
   }
-  const bool wide = decoded.type == SampleType::uint16;
-  const std::size_t levels = wide ? 65536 : 256;
-  const std::vector<float> color = gamma_table(levels, gamma), straight = gamma_table(levels, 1.0f);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t stored =
-        wide ? std::size_t{sample<std::uint16_t>(decoded, i)} : sample<std::uint8_t>(decoded, i);
-    values[i] = (i % channels == alpha ? straight : color)[stored];
+
+  float color(std::size_t pixel, int channel) const { return at(pixel, channel, color_); }
+  float alpha(std::size_t pixel) const { return at(pixel, decoded_.alpha_channel, straight_); }
+
+ private:
+  float at(std::size_t pixel, int channel, const std::vector<float>& table) const {
+    const std::size_t index =
+        pixel * static_cast<std::size_t>(decoded_.channels) + static_cast<std::size_t>(channel);
+    if (decoded_.type == SampleType::float32) return sample<float>(decoded_, index);
+    return decoded_.type == SampleType::uint16 ? table[sample<std::uint16_t>(decoded_, index)]
+                                               : table[sample<std::uint8_t>(decoded_, index)];
   }
-  return values;
+
+  const DecodedImage& decoded_;
+  std::vector<float> color_, straight_;
+};
+
+Vec3 times(const ColorMatrix& m, Vec3 c) {
+  const Vec3d v = to_double(c);
+  return to_float(Vec3d{m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
+                        m[6] * v.x + m[7] * v.y + m[8] * v.z});
 }
 
-/// Red, green and blue of a pixel; grey in all three.
-Vec3 color_of(const float* pixel, int color_channels) {
-  return color_channels >= 3 ? Vec3{pixel[0], pixel[1], pixel[2]}
-                             : Vec3{pixel[0], pixel[0], pixel[0]};
+/// The colour of a stored pixel; grey in all three. Where the file multiplied it by alpha, a
+/// texture takes what is left of that; a light is what shines.
+Vec3 color_of(const LinearSamples& samples, std::size_t pixel, const ImageMeaning& meaning,
+              bool has_alpha, ImageUse use) {
+  if (meaning.color_channels == 0) return {};
+  const bool grey = meaning.color_channels == 1;
+  const float first = samples.color(pixel, 0);
+  Vec3 color{first, grey ? first : samples.color(pixel, 1), grey ? first : samples.color(pixel, 2)};
+  if (meaning.premultiplied && has_alpha && use == ImageUse::texture) {
+    const float alpha = samples.alpha(pixel);
+    if (alpha > 0 && alpha != 1) color = Vec3{color.x / alpha, color.y / alpha, color.z / alpha};
+  }
+  return meaning.matrix ? times(*meaning.matrix, color) : color;
 }
 
 Vec3 select(Vec3 color, float alpha, ImageChannel channel) {
@@ -84,12 +105,29 @@ Vec3 select(Vec3 color, float alpha, ImageChannel channel) {
   return {};
 }
 
-void check_content(const Image& image) {
+void check_content(const Image& image, const std::string& bytes) {
   if (image.content == Hash128{}) return;
-  const Hash128 found = hash_file(image.file).xxh128;
+  const Hash128 found = hash_text(bytes);
   if (found != image.content)
     fail(ErrorKind::asset, "{}: changed since the scene was read: its hash was {} and is {}",
          image.file.string(), image.content.hex(), found.hex());
+}
+
+/// What the image is asked for and does not have.
+void check_use(const Image& image, const DecodedImage& decoded, const ImageMeaning& meaning) {
+  const std::string name = image.file.string();
+  if (image.channel == ImageChannel::alpha) {
+    if (decoded.alpha_channel < 0)
+      fail(ErrorKind::asset, "{}: wanted the alpha channel, found none among {} channels", name,
+           decoded.channels);
+  } else if (meaning.color_channels == 0) {
+    fail(ErrorKind::asset, "{}: wanted a colour, found alpha alone", name);
+  }
+  if (meaning.cube && image.use == ImageUse::light)
+    fail(ErrorKind::asset,
+         "{}: a light wants its picture by longitude and latitude, found the faces of a cube "
+         "(exrenvmap converts it)",
+         name);
 }
 
 void check_finite(const Image& image, Vec3 color, std::size_t pixel, int width) {
@@ -104,35 +142,43 @@ void check_finite(const Image& image, Vec3 color, std::size_t pixel, int width) 
 
 void load_image(Image& image) {
   if (image.file.empty() || !image.rgb.empty()) return;
-  check_content(image);
-  const DecodedImage decoded = decode_image_file(image.file, Halves::widen);
+  const std::string name = image.file.string();
+  std::string bytes = read_image_file(image.file);
+  check_content(image, bytes);
+  const DecodedImage decoded = decode_image_bytes(bytes_of(bytes), name, Halves::widen);
+  const ImageMeaning meaning = image_meaning(bytes_of(bytes), decoded, name);
+  std::string().swap(bytes);
+  check_use(image, decoded, meaning);
   const bool has_alpha = decoded.alpha_channel >= 0;
-  if (image.channel == ImageChannel::alpha && !has_alpha)
-    fail(ErrorKind::asset, "{}: wanted the alpha channel, found none among {} channels",
-         image.file.string(), decoded.channels);
-  const std::vector<float> values = linear_samples(decoded, image.gamma);
-  const auto channels = static_cast<std::size_t>(decoded.channels);
-  const std::size_t pixels = values.size() / channels;
-  image.rgb.resize(pixels * 3);
-  std::size_t negative = 0;
+  const LinearSamples samples(decoded, image.gamma);
+  const std::size_t pixels =
+      static_cast<std::size_t>(meaning.width) * static_cast<std::size_t>(meaning.height);
+  std::vector<float> rgb(pixels * 3);
+  std::size_t negative = 0, black = 0;
   for (std::size_t i = 0; i < pixels; ++i) {
-    const float* pixel = values.data() + i * channels;
-    const float alpha = has_alpha ? pixel[decoded.alpha_channel] : 1.0f;
-    Vec3 color =
-        select(color_of(pixel, decoded.channels - (has_alpha ? 1 : 0)), alpha, image.channel) *
-        image.gain;
-    check_finite(image, color, i, decoded.width);
-    float* out = image.rgb.data() + i * 3;
+    const auto columns = static_cast<std::size_t>(meaning.width);
+    const auto stored =
+        meaning.stored(static_cast<int>(i % columns), static_cast<int>(i / columns));
+    Vec3 color;
+    if (stored)
+      color = select(color_of(samples, *stored, meaning, has_alpha, image.use),
+                     has_alpha ? samples.alpha(*stored) : 1.0f, image.channel) *
+              image.gain;
+    check_finite(image, color, i, meaning.width);
     for (int c = 0; c < 3; ++c) {
       if (color[c] < 0) ++negative;
-      out[c] = color[c] < 0 ? 0.0f : color[c];
+      rgb[i * 3 + static_cast<std::size_t>(c)] = color[c] < 0 ? 0.0f : color[c];
     }
+    black += color.x <= 0 && color.y <= 0 && color.z <= 0 ? 1U : 0U;
   }
-  image.width = decoded.width;
-  image.height = decoded.height;
+  image.rgb = std::move(rgb);
+  image.width = meaning.width;
+  image.height = meaning.height;
   if (negative > 0)
-    warn(fmt::format("{}: {} negative values of {} are taken as 0", image.file.string(), negative,
-                     pixels * 3));
+    warn(fmt::format("{}: {} negative values of {} are taken as 0", name, negative, pixels * 3));
+  if (!meaning.unused.empty()) warn(fmt::format("{}: {} are not used", name, meaning.unused));
+  if (black == pixels && image.use == ImageUse::light)
+    warn(fmt::format("{}: all {} pixels are black, so it gives no light", name, pixels));
 }
 
 void load_images(Scene& scene) {

@@ -12,12 +12,16 @@ namespace ds {
 /// HDR): stored * gain. Then the channel: `rgb` repeats a grey image's one channel; `red`, `green`,
 /// `blue` and `alpha` (linear, no gamma) repeat that channel; `mean` is (r + g + b) / 3;
 /// `colored_mean` is Rec.709 luminance as LuxCore weighs it (0.212671, 0.715160, 0.072169). Colours
-/// are not multiplied by alpha. The same bits on every machine for the same decoded file.
+/// are not multiplied by alpha: EXR files, which store them so, are divided by it for a texture.
+/// What the file says of windows, primaries, channels and which way up it is: image_meaning.h. The
+/// same bits on every machine for the same decoded file.
 ///
-/// Negative values, which resampling leaves in HDR images, become 0, with one warning that counts
-/// them. Throws Error(asset) for a file that is missing, is no image, is cut off, has other than 1
-/// to 4 channels or over 2^28 pixels, has another hash than `content` (unless that is zero), lacks
-/// the channel asked for, or holds a NaN or an infinity, which is named by its place.
+/// Warnings: negative values, which resampling leaves in HDR images, become 0, and are counted;
+/// channels and parts that nothing reads; a light's image that is black throughout. Throws
+/// Error(asset) for a file that is missing, is no image, is cut off, promises more pixels than a
+/// file of its size can hold or over 2^28, has channels that make no picture, has another hash than
+/// `content` (unless that is zero), lacks the channel asked for, is a cube map for a light, or
+/// holds a NaN or an infinity, which is named by its place.
 void load_image(Image& image);
 
 /// Loads every image of the scene.

@@ -22,6 +22,7 @@ struct TextureRef {
 
 enum class ImageWrap { repeat, black, white, clamp };
 enum class ImageFilter { nearest, linear };
+enum class ImageUse { texture, light };
 enum class ImageChannel { rgb, red, green, blue, alpha, mean, colored_mean };
 
 /// An image file and how it is read. Pixels are loaded by tracer/render; row 0 is the top.
@@ -33,6 +34,7 @@ struct Image {
   ImageWrap wrap = ImageWrap::repeat;
   ImageFilter filter = ImageFilter::linear;
   ImageChannel channel = ImageChannel::rgb;
+  ImageUse use = ImageUse::texture;
   Hash128 content;        ///< of the file's bytes, or of the pixels where the reader made them
   std::string made_from;  ///< what the reader made the pixels from, in words for `explain`; empty
                           ///< for a file

@@ -135,7 +135,7 @@ void read_infinite(const SdlNode& node, Light& light) {
   mirror.m[0] = -1;
   light.light_to_world = rotation_of(node) * mirror;
   light.upper_hemisphere_only = node.flag("sampleupperhemisphereonly", false);
-  light.image = read_image(node, 1);
+  light.image = read_image(node, 1, ImageUse::light);
 }
 
 void read_constant_infinite(const SdlNode& node, Light& light) {

@@ -122,7 +122,7 @@ ToneMap read_tone_map(SdlReader& reader);
 
 /// The image of an imagemap texture or infinite light (file, gain, gamma, wrap, filter, channel);
 /// -1 where it is wrong.
-int read_image(const SdlNode& node, double gain);
+int read_image(const SdlNode& node, double gain, ImageUse use);
 /// A texture that multiplies `ref` by `factor`; a constant stays one.
 TextureRef scaled(SdlReader& reader, const std::string& name, const TextureRef& ref, Vec3d factor);
 /// The radiance of a black body, LuxCore's `temperature` and `temperature.normalize`: factor on a

@@ -98,7 +98,7 @@ void read_table_texture(const SdlNode& node, int type) {
   constexpr std::array<std::string_view, 3> k_3d = {"checkerboard3d", "marble", "fbm"};
   if (row.name == "imagemap") {
     read_mapping_2d(node, texture);
-    texture.image = read_image(node, node.number("gain", 1));
+    texture.image = read_image(node, node.number("gain", 1), ImageUse::texture);
   } else if (std::find(k_3d.begin(), k_3d.end(), row.name) != k_3d.end()) {
     read_mapping_3d(node, texture);
   }
@@ -187,18 +187,19 @@ float read_gamma(const SdlNode& node, const std::filesystem::path& file) {
 
 bool same_reading(const Image& a, const Image& b) {
   return a.file == b.file && a.gamma == b.gamma && a.gain == b.gain && a.wrap == b.wrap &&
-         a.filter == b.filter && a.channel == b.channel;
+         a.filter == b.filter && a.channel == b.channel && a.use == b.use;
 }
 
 }  // namespace
 
-int read_image(const SdlNode& node, double gain) {
+int read_image(const SdlNode& node, double gain, ImageUse use) {
   SdlReader& reader = node.reader();
   const std::optional<std::filesystem::path> file = node.file("file");
   if (!file && !node.has("file")) node.error("", "file is missing");
   Image image;
   image.file = file.value_or("");
   image.gain = static_cast<float>(gain);
+  image.use = use;
   image.gamma = read_gamma(node, image.file);
   image.wrap = choose(node, "wrap", k_wraps);
   image.filter = choose(node, "filter", k_filters);

@@ -227,7 +227,7 @@ TEST(Encoding, WhatIsNoFilmIsAnAssetError) {
     return "no error";
   };
   const std::vector<std::byte> film = encode_film_exr(gradient_film(64, 64));
-  EXPECT_THAT(message({}), HasSubstr("store/film: wanted a PNG or EXR file"));
+  EXPECT_THAT(message({}), HasSubstr("store/film: cannot be read as an image: wanted EXR"));
   EXPECT_THAT(message(encode_png(Picture{1, 1, 3, {1, 2, 3}})),
               HasSubstr("store/film: no film of ours"));
   EXPECT_THAT(message(encode_depth_exr(Geometry{1, 1, {}, {1}})), HasSubstr("found 1 of float"));
