@@ -3,6 +3,7 @@
 
 #include "tracer/base/error.h"
 #include "tracer/device/texture_code.h"
+#include "tracer/device/ties.h"
 #include "tracer/kernels/all_nodes.h"
 #include "tracer/scene/type_tables.h"
 
@@ -31,7 +32,8 @@ Vec3 face_normal(const Corners& c) {
       normalized(cross(to_double(c[1]) - to_double(c[0]), to_double(c[2]) - to_double(c[0]))));
 }
 
-void pack_object(const Object& object, std::uint32_t light, Words& out) {
+/// `tied`: Ties::flags from the object's first triangle on.
+void pack_object(const Object& object, std::uint32_t light, const std::uint32_t* tied, Words& out) {
   const Mesh& mesh = object.mesh;
   for (const auto& t : mesh.triangles) {
     const Corners corners = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
@@ -47,7 +49,8 @@ void pack_object(const Object& object, std::uint32_t light, Words& out) {
     out.add(static_cast<std::uint32_t>(object.material));
     out.add(light);
     out.add(object.id);
-    out.add(object.camera_invisible ? std::uint32_t{kernels::k_flag_camera_invisible} : 0u);
+    out.add(*tied++ |
+            (object.camera_invisible ? std::uint32_t{kernels::k_flag_camera_invisible} : 0u));
   }
 }
 
@@ -143,8 +146,12 @@ PackedScene pack_scene(const Scene& scene, const Features& features, BvhQuality 
   pack_materials(scene, features, texels, packed);
   std::vector<std::uint32_t> mesh_lights;
   pack_lights(scene, features, packed, mesh_lights);
+  const Ties ties = find_ties(scene, corners, packed.bvh);
+  std::copy(ties.low.begin(), ties.low.end(), packed.data.tie_low);
+  std::copy(ties.high.begin(), ties.high.end(), packed.data.tie_high);
+  const std::vector<std::uint32_t> first = first_triangles(scene);
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
-    pack_object(scene.objects[i], mesh_lights[i], packed.triangles);
+    pack_object(scene.objects[i], mesh_lights[i], ties.flags.data() + first[i], packed.triangles);
   return packed;
 }
 

@@ -106,8 +106,9 @@ DS_FN SlabRay slab_ray(const __global float8* nodes, const Ray* ray) {
   return s;
 }
 
-/// Entry distances of the eight children; `*open` tells which are met before t_max.
-DS_FN float8 test_boxes(const __global float8* node, const SlabRay* s, float t_max, LaneSet* open) {
+/// Entry distances of the eight children; `*open` tells which are met in [t_min, t_max].
+DS_FN float8 test_boxes(const __global float8* node, const SlabRay* s, float t_min, float t_max,
+                        LaneSet* open) {
   const __global float* planes = (const __global float*)node;
 #define DS_PLANE(end, axis) (*(const __global float8*)(planes + s->end##_plane[axis]))
   const float8 near_x =
@@ -120,7 +121,7 @@ DS_FN float8 test_boxes(const __global float8* node, const SlabRay* s, float t_m
   const float8 far_y = fma(DS_PLANE(far, 1), (float8)(s->inverse[1]), (float8)(s->far_offset[1]));
   const float8 far_z = fma(DS_PLANE(far, 2), (float8)(s->inverse[2]), (float8)(s->far_offset[2]));
 #undef DS_PLANE
-  const float8 entry = greater8(greater8(near_x, near_y), greater8(near_z, (float8)(0.0f)));
+  const float8 entry = greater8(greater8(near_x, near_y), greater8(near_z, (float8)(t_min)));
   const float8 leave = lesser8(lesser8(far_x, far_y), lesser8(far_z, (float8)(t_max)));
   *open = lanes_set(entry <= leave);
   return entry;
@@ -308,7 +309,7 @@ static Hit nearest_hit(const __global float8* nodes, const __global float8* leav
     while (!(current & k_leaf_bit)) {
       const __global float8* node = nodes + current * k_node_vectors;
       LaneSet open;
-      const float8 entries = test_boxes(node, &slab, hit.t, &open);
+      const float8 entries = test_boxes(node, &slab, 0.0f, hit.t, &open);
       if (!open) goto next;
       if (without_first(open)) {
         current = push_open(&stack, &size, node, entries, open);
@@ -340,7 +341,7 @@ static bool any_hit(const __global float8* nodes, const __global float8* leaves,
     while (!(current & k_leaf_bit)) {
       const __global float8* node = nodes + current * k_node_vectors;
       LaneSet open;
-      test_boxes(node, &slab, ray.t_max, &open);
+      test_boxes(node, &slab, 0.0f, ray.t_max, &open);
       if (!open) goto next;
       const __global uint* child = (const __global uint*)(node + k_node_children);
       current = child[first_lane(open)];

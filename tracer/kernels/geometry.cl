@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // One ray a pixel, through its centre and the pinhole: which object, how deep. Needs no material,
 // light or lens.
-#include "tracer/kernels/bvh.cl"
+#include "tracer/kernels/ties.cl"
 #include "tracer/kernels/types.h"
 
 DS_FN bool is_camera_invisible(const __global float* triangles, uint id) {
   const uint flags = as_uint(triangles[id * k_triangle_words + k_triangle_flags]);
   return (flags & k_flag_camera_invisible) != 0;
+}
+
+DS_FN Hit camera_hit(const __global float8* nodes, const __global float8* leaves,
+                     const __global float* triangles, Ray ray) {
+  const Hit hit = nearest_hit(nodes, leaves, ray);
+  if (hit.id == k_none || !may_yield(tie_flags(triangles, hit.id), true)) return hit;
+  return top_hit(nodes, leaves, triangles, ray, hit, true);
 }
 
 /// objects: object id of the nearest triangle, or k_none. depths: distance along the viewing axis
@@ -28,7 +35,7 @@ __kernel void trace_geometry(const __global float8* restrict nodes,
     ray.direction[axis] = fma(sx, view->right[axis], fma(sy, view->up[axis], view->forward[axis]));
   }
   ray.t_max = 1e30f;
-  Hit hit = nearest_hit(nodes, leaves, ray);
+  Hit hit = camera_hit(nodes, leaves, triangles, ray);
   float passed = 0.0f;
   while (hit.id != k_none && is_camera_invisible(triangles, hit.id)) {
     // On from just behind the surface: a few ulps of all that was passed.
@@ -36,7 +43,7 @@ __kernel void trace_geometry(const __global float8* restrict nodes,
     passed += step;
     for (int axis = 0; axis < 3; ++axis)
       ray.origin[axis] = fma(step, ray.direction[axis], ray.origin[axis]);
-    hit = nearest_hit(nodes, leaves, ray);
+    hit = camera_hit(nodes, leaves, triangles, ray);
   }
   const bool met = hit.id != k_none;
   objects[i] = met ? as_uint(triangles[hit.id * k_triangle_words + k_triangle_object]) : k_none;

@@ -65,6 +65,10 @@ DS_FN Surface surface_of(const LaneHits* hits, real3 origin, real3 direction) {
   const real b2 = weights.y;
   const real b0 = 1.0f - b1 - b2;
   Surface s = surface_at(&c, b1, b2, negate(direction));
+  // Rays off a surface must clear what ties with it, unless both are where floats say exactly.
+  const natural flags = bits_of(hit_word(hits, k_triangle_flags));
+  s.error = choose((flags & (uint)k_flag_tie_rounded) != 0u,
+                   splat(real_of(((flags >> (uint)k_tie_error_shift) & 0xffu) << 23u)), s.error);
   s.u = fma(b0, hit_word(hits, k_triangle_uvs),
             fma(b1, hit_word(hits, k_triangle_uvs + 2), b2 * hit_word(hits, k_triangle_uvs + 4)));
   s.v = fma(b0, hit_word(hits, k_triangle_uvs + 1),

@@ -11,6 +11,7 @@
 #include "tracer/kernels/hits.cl"
 #include "tracer/kernels/ray_counts.h"
 #include "tracer/kernels/shade.h"
+#include "tracer/kernels/tied_lanes.cl"
 
 /// Pairs of dimensions a sample uses: two for the camera, then k_pairs_vertex at each path vertex.
 enum { k_pair_pixel, k_pair_lens, k_pairs_camera };
@@ -26,6 +27,9 @@ typedef struct {
   natural diffuse, glossy, specular;  ///< bounces of each sort
   natural sample;                     ///< number of the sample in flight
   natural quarter;                    ///< of its pixel that it is in
+  natural layer;                      ///< triangle that the ray leaves to the next tied with it
+                                      ///< (next_layer of ties.cl), or k_none
+  mask rises;                         ///< to the next above it, not below
   mask alive;
   // The last vertex' light is known once its shadow ray is traced, together with the next ray of
   // the path, or with the first of the next sample where the path ended.
@@ -94,6 +98,7 @@ DS_FN void start_paths(Paths* paths, mask start, const Pixels* pixels, const Vie
   paths->diffuse = choose_natural(start, none, paths->diffuse);
   paths->glossy = choose_natural(start, none, paths->glossy);
   paths->specular = choose_natural(start, none, paths->specular);
+  paths->layer = choose_natural(start, (natural)(k_none), paths->layer);
   paths->alive = paths->alive | start;
 }
 
@@ -288,6 +293,42 @@ DS_FN void add_direct(Paths* paths, Sums* sums, const BatchHits* found) {
   paths->shadow.wanted = (mask)(0);
 }
 
+/// The lanes' surface points among those tied with others.
+typedef struct {
+  natural flags;  ///< of the triangle
+  mask inside;    ///< reached from one tied with it, not from afar
+  mask rises;     ///< and from below
+} Ties;
+
+/// Lets nearest hits yield to those that lie on them. True where any did.
+DS_FN bool settle_ties(const SceneTables* t, const SceneData* scene, const Paths* paths,
+                       const LaneRays* rays, mask asks, natural flags, BatchHits* found) {
+  const mask camera = paths->vertices == 0u;
+  mask wanted = asks & ((flags & (uint)k_flag_covered) != 0u);
+#ifdef DS_CAMERA_INVISIBLE
+  wanted = wanted | (asks & camera & ((flags & (uint)k_flag_camera_invisible) != 0u) &
+                     ((flags & (uint)k_flags_tied) != 0u));
+#endif
+  if (!any_lane(wanted)) return false;
+  const real3 at = add_scaled(rays->origin, rays->direction, *(const real*)found->t);
+  wanted = wanted & (at.x >= scene->tie_low[0]) & (at.x <= scene->tie_high[0]) &
+           (at.y >= scene->tie_low[1]) & (at.y <= scene->tie_high[1]) &
+           (at.z >= scene->tie_low[2]) & (at.z <= scene->tie_high[2]);
+  return any_lane(wanted) &&
+         top_hits(t->nodes, t->leaves, t->triangles, rays, wanted, camera, found);
+}
+
+/// Where paths of `active` that have left a tied surface by their new direction go on to the next:
+/// from one reached from afar only through it, since nothing lies on that.
+DS_FN void ask_for_layer(Paths* paths, mask active, const Ties* ties, const Surface* s,
+                         natural id) {
+  const mask through = dot(paths->direction, s->normal) < 0.0f;
+  paths->rises = choose_mask(through, ties->rises, !ties->rises);
+  const mask up = ties->inside & paths->rises & ((ties->flags & (uint)k_flag_covered) != 0u);
+  const mask down = !paths->rises & ((ties->flags & (uint)k_flag_covers) != 0u);
+  paths->layer = choose_natural(active & (up | down), id, paths->layer);
+}
+
 /// How a step left the paths that it ended.
 typedef struct {
   mask done;    ///< the sample is complete
@@ -307,7 +348,20 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
   next.wanted = paths->alive;
   BatchHits found;
   DS_COUNT_STEP(paths);
+  Ties ties;
+  ties.inside = (mask)(0);
+  ties.rises = paths->rises;
+  natural layer = (natural)(k_none);
+  if (any_lane(paths->alive & (paths->layer != k_none))) {
+    layer = next_layers(t->nodes, t->leaves, t->triangles, paths->origin, paths->layer,
+                        paths->rises, paths->alive & (paths->layer != k_none));
+    ties.inside = layer != k_none;
+    next.wanted = next.wanted & !ties.inside;
+    paths->layer = (natural)(k_none);
+  }
+  ties.rises = ties.rises & ties.inside;
   trace_lanes(t->nodes, t->leaves, &next, &paths->shadow, &found);
+  *(natural*)found.id = choose_natural(ties.inside, layer, *(const natural*)found.id);
   add_direct(paths, sums, &found);
   mask hit = paths->alive & (*(const natural*)found.id != k_none);
   const mask escapes = paths->alive & !hit;
@@ -323,12 +377,16 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
   if (!any_lane(hit)) return ends;
   LaneHits hits;
   load_triangles(t->triangles, &found, &hits);
+  ties.flags = bits_of(hit_word(&hits, k_triangle_flags));
+  if (settle_ties(t, scene, paths, &next, hit & !ties.inside, ties.flags, &found)) {
+    load_triangles(t->triangles, &found, &hits);
+    ties.flags = bits_of(hit_word(&hits, k_triangle_flags));
+  }
   const Surface s = surface_of(&hits, paths->origin, paths->direction);
   const real3 wo = negate(paths->direction);
 #ifdef DS_CAMERA_INVISIBLE
-  const natural flags = bits_of(hit_word(&hits, k_triangle_flags));
   const mask passes =
-      hit & (paths->vertices == 0u) & ((flags & (uint)k_flag_camera_invisible) != 0u);
+      hit & (paths->vertices == 0u) & ((ties.flags & (uint)k_flag_camera_invisible) != 0u);
   const real3 behind = offset_origin(s.position, s.error, s.normal, paths->direction);
   paths->origin = choose(passes, behind, paths->origin);
   hit = hit & !passes;
@@ -372,8 +430,11 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
 #endif
 #ifdef DS_LIGHTS_SAMPLED
   ask_for_light(paths, active, &s, &m, &leaving, sampler, pair, choices.x, scene, t);
+  // What the path came through stands before every light on that side.
+  paths->shadow.wanted = paths->shadow.wanted & !ties.inside;
 #endif
   ends.closes = scatter(paths, active, &s, &m, &leaving, sampler, pair, lobe, choices.y, view);
+  ask_for_layer(paths, active & !ends.closes, &ties, &s, *(const natural*)found.id);
   return ends;
 }
 
@@ -390,7 +451,8 @@ DS_OUT_OF_LINE void trace_pixels(PixelQueue* queue, const __global SceneData* re
   clear_sums(&sums, film, &view);
   Paths paths;
   DS_CLEAR_RAY_COUNTS(paths);
-  paths.alive = paths.closes = paths.shadow.wanted = (mask)(0);
+  paths.alive = paths.closes = paths.shadow.wanted = paths.rises = (mask)(0);
+  paths.layer = (natural)(k_none);
   paths.shadow.origin = paths.shadow.direction = splat((real)(0.0f));
   paths.shadow.t_max = (real)(0.0f);
   paths.direct = paths.closing = splat((real)(0.0f));

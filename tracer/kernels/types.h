@@ -14,7 +14,8 @@ typedef struct {
   uint
       light_rounds;  ///< candidates for a vertex' shadow ray: light_count, one of each light, whose
                      ///< selection probabilities are then 1 or 0; or 1, of a light chosen by these
-  uint material_words;  ///< words a row of materials takes
+  uint material_words;            ///< words a row of materials takes
+  float tie_low[3], tie_high[3];  ///< where surfaces may tie (ties.cl); low above high: nowhere
 } SceneData;
 
 /// Constants of a picture: the camera and the engine settings.
@@ -36,7 +37,7 @@ typedef struct {
 } ViewData;
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(SceneData) == 5 * 4 && sizeof(ViewData) == 31 * 4, "no padding");
+static_assert(sizeof(SceneData) == 11 * 4 && sizeof(ViewData) == 31 * 4, "no padding");
 #endif
 
 enum {
@@ -66,6 +67,15 @@ enum {
   k_triangle_flags = 27,     ///< k_flag_*
   k_triangle_words = 28,
   k_flag_camera_invisible = 1,
+  // Of a triangle that ties with others (ties.cl):
+  k_flag_covered = 2,      ///< one of lesser rank lies in its plane
+  k_flag_covers = 4,       ///< one of greater rank does
+  k_flag_tie_rounded = 8,  ///< and not just in the same plane across an axis
+  k_flags_tied = k_flag_covered | k_flag_covers,
+  k_tie_error_shift = 8,  ///< 8 bits: exponent of the float that bounds the position_error of all
+                          ///< that tie with it
+  k_tie_rank_shift = 16,  ///< 16 bits: its object's rank; the least lies on top
+  k_most_tie_rank = 0xffff,
 
   // A row of materials: a head, then the inputs.
   k_material_type = 0,

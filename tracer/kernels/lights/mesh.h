@@ -46,7 +46,10 @@ DS_FN LightSample mesh_sample(LightTables t, uint at, real3 from, real2 u) {
   const real squared = greater(dot(way, way), (real)(1e-20f));
   s.wi = scale(way, 1.0f / sqrt(squared));
   const real cosine = -dot(normal, s.wi);
-  s.target = point;
+  // Shadow rays end in front of what ties with the triangle (ties.cl).
+  const natural flags = load_natural(t.triangles, row + (uint)k_triangle_flags);
+  const real error = real_of(((flags >> (uint)k_tie_error_shift) & 0xffu) << 23u);
+  s.target = add_scaled(point, normal, 4.0f * error);
   s.bounded = squared > 0.0f;
   s.radiance = uniform3(p + mesh_radiance);
   s.pdf = choose(cosine > 1e-6f, squared / (greater(cosine, (real)(1e-6f)) * p[mesh_area]),

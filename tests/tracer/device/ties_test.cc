@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/device/ties.h"
+
+#include "tests/render/pictures.h"
+#include "tracer/kernels/layout.h"
+#include "tracer/scene/sdl.h"
+
+#include <gtest/gtest.h>
+
+namespace ds {
+namespace {
+
+using kernels::k_flag_covered;
+using kernels::k_flag_covers;
+using kernels::k_flag_tie_rounded;
+using kernels::k_tie_rank_shift;
+
+Ties ties_of(const Scene& scene) {
+  std::vector<std::array<Vec3, 3>> corners;
+  for (const Object& object : scene.objects)
+    for (const auto& t : object.mesh.triangles)
+      corners.push_back(
+          {object.mesh.positions[t[0]], object.mesh.positions[t[1]], object.mesh.positions[t[2]]});
+  return find_ties(scene, corners, build_bvh(corners));
+}
+
+/// By object of two triangles each: the flags of the first, less rank and error.
+std::vector<std::uint32_t> kinds(const Ties& ties) {
+  std::vector<std::uint32_t> list;
+  for (std::size_t i = 0; i < ties.flags.size(); i += 2)
+    list.push_back((ties.flags[i] | ties.flags[i + 1]) & 0xffu);
+  return list;
+}
+
+Mesh level_square(float x, float z, float half) {
+  return pictures::quad({x, 0, z}, {half, 0, 0}, {0, half, 0});
+}
+
+Scene scene_of(const std::vector<Mesh>& meshes) {
+  Scene scene;
+  const int grey = pictures::add_matte(scene, {0.5f, 0.5f, 0.5f});
+  for (const Mesh& mesh : meshes)
+    pictures::add_object(scene, mesh, grey);
+  return scene;
+}
+
+TEST(Ties, AreOfFacesInOnePlaneThatOverlap) {
+  const Ties ties = ties_of(scene_of({level_square(0, 0.3f, 1), level_square(0.5f, 0.3f, 0.25f)}));
+  EXPECT_EQ(kinds(ties), (std::vector<std::uint32_t>{k_flag_covered, k_flag_covers}));
+  EXPECT_LT(ties.low[0], 0.25f);
+  EXPECT_GT(ties.low[0], 0.2f);
+  EXPECT_LE(ties.low[2], 0.3f);
+  EXPECT_GE(ties.high[2], 0.3f);
+}
+
+TEST(Ties, AreNotOfNeighboursNorOfFacesThatRaysCanTellApart) {
+  for (const Mesh& other : {level_square(1.5f, 0.3f, 0.5f), level_square(0.5f, 0.30001f, 0.25f),
+                            level_square(3, 0.3f, 0.5f),
+                            pictures::quad({0.5f, 0, 0.3f}, {0.25f, 0, 0.02f}, {0, 0.25f, 0}),
+                            pictures::quad({0.5f, 0, 0.3f}, {0.25f, 0, 0}, {0, 0, 0.25f})}) {
+    const Ties ties = ties_of(scene_of({level_square(0, 0.3f, 1), other}));
+    EXPECT_EQ(kinds(ties), (std::vector<std::uint32_t>{0, 0}));
+    EXPECT_GT(ties.low[0], ties.high[0]);
+  }
+}
+
+TEST(Ties, OfOneObjectAreNone) {
+  const Scene scene = scene_of({level_square(0, 0, 1)});
+  EXPECT_EQ(kinds(ties_of(scene)), std::vector<std::uint32_t>{0});
+}
+
+TEST(Ties, AreMarkedWhereNotInTheSamePlaneAcrossAnAxis) {
+  const Mesh tilted = pictures::quad({0, 0, 0.3f}, {1, 0, 0.3f}, {0, 1, 0.1f});
+  const Mesh part = pictures::quad({0.1f, 0, 0.33f}, {0.1f, 0, 0.03f}, {0, 0.1f, 0.01f});
+  const Ties ties = ties_of(scene_of({tilted, part}));
+  EXPECT_EQ(kinds(ties), (std::vector<std::uint32_t>{k_flag_covered | k_flag_tie_rounded,
+                                                     k_flag_covers | k_flag_tie_rounded}));
+}
+
+TEST(Ties, RankModelsBeforeLampsBeforeLesserThingsBeforeEarlierOnes) {
+  Scene scene = scene_of({level_square(0, 0, 1), level_square(0, 0, 0.5f), level_square(0, 0, 0.5f),
+                          level_square(0, 0, 2), level_square(0, 0, 3)});
+  const int lamp = pictures::add_matte(scene, {});
+  scene.materials[static_cast<std::size_t>(lamp)].emits = true;
+  scene.materials[static_cast<std::size_t>(lamp)].emission.constant = {1, 1, 1};
+  scene.objects[3].material = lamp;
+  scene.objects[4].id = k_model_object_id;
+  const Ties ties = ties_of(scene);
+  std::vector<std::uint32_t> ranks;
+  for (std::size_t i = 0; i < ties.flags.size(); i += 2)
+    ranks.push_back(ties.flags[i] >> k_tie_rank_shift);
+  EXPECT_EQ(ranks, (std::vector<std::uint32_t>{4, 2, 3, 1, 0}));
+}
+
+}  // namespace
+}  // namespace ds
