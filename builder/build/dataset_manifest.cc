@@ -14,32 +14,6 @@
 namespace ds {
 namespace {
 
-namespace fs = std::filesystem;
-
-constexpr const char* k_manifest_files[] = {"manifest/images.jsonl", "manifest/dataset.json",
-                                            "manifest/checksums.xxh128"};
-/// Hash of all the manifest is written from.
-Hash128 fingerprint(const DatasetRecord& dataset, const std::vector<ImageRecord>& images) {
-  std::string text = to_json(dataset);
-  for (const ImageRecord& image : images)
-    text += '\n' + to_json_line(image);
-  return hash_text(text);
-}
-
-bool manifest_stands(Dataset& dataset, Hash128 wanted,
-                     const std::map<std::string, PlacedFile>& placed) {
-  if (dataset.row.manifest != wanted) return false;
-  return std::all_of(
-      std::begin(k_manifest_files), std::end(k_manifest_files), [&](const char* path) {
-        const auto known = placed.find(path);
-        if (known == placed.end() || known->second.product != wanted) return false;
-        const fs::path file = dataset.folder / path;
-        const std::optional<FileStamp> stamp = stamp_of(file);
-        return stamp &&
-               (stamp == known->second.stamp || hash_file(file).xxh128 == known->second.object);
-      });
-}
-
 /// Of a picture whose pixels have different numbers of samples: the mean, rounded up.
 int mean_spp(const FilmFacts& facts, const ImageRecord& image) {
   const std::uint64_t pixels =
@@ -124,25 +98,6 @@ DatasetRecord dataset_record(const Recipe& recipe, const std::map<std::string, M
   add_licences("environments", recipe.environments);
   record.licences = group_licences(texts);
   return record;
-}
-
-bool update_manifest(Dataset& dataset, const std::map<std::string, MendedModel>& mended,
-                     const std::vector<ImageRecord>& images) {
-  const DatasetRecord record = dataset_record(dataset.recipe, mended, images);
-  const Hash128 wanted = fingerprint(record, images);
-  Database& database = *dataset.database;
-  if (manifest_stands(dataset, wanted, database.placed_files(dataset.row.id))) return false;
-  write_manifest(dataset.folder, record, images);
-  Transaction transaction(database.connection());
-  for (const char* path : k_manifest_files) {
-    const fs::path file = dataset.folder / path;
-    database.put_placed(dataset.row.id, {path, "", k_manifest_kind, wanted, hash_file(file).xxh128,
-                                         stamp_of(file)});
-  }
-  dataset.row.manifest = wanted;
-  database.set_manifest(dataset.row.id, wanted);
-  transaction.commit();
-  return true;
 }
 
 }  // namespace ds

@@ -22,9 +22,4 @@ ImageRecord image_record(const PlannedImage& image, Database& database);
 DatasetRecord dataset_record(const Recipe& recipe, const std::map<std::string, MendedModel>& mended,
                              const std::vector<ImageRecord>& images);
 
-/// Writes the manifest of these images, unless it stands there already as this would write it.
-/// Returns whether it wrote.
-bool update_manifest(Dataset& dataset, const std::map<std::string, MendedModel>& mended,
-                     const std::vector<ImageRecord>& images);
-
 }  // namespace ds

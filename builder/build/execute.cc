@@ -4,6 +4,8 @@
 #include "builder/build/dataset_manifest.h"
 #include "builder/build/host.h"
 #include "builder/build/killed_builds.h"
+#include "builder/build/manifest_state.h"
+#include "builder/build/older_records.h"
 #include "builder/build/placed_files.h"
 #include "tracer/base/disk_error.h"
 
@@ -174,8 +176,6 @@ void Execution::collect_failures() {
 }
 
 void Execution::remove_left_over() {
-  // Files of failed images are older than the recipe. They go too: a folder holds what its manifest
-  // lists.
   Database& database = *dataset_.database;
   std::set<fs::path> folders;
   std::vector<std::string> removed;
@@ -224,14 +224,24 @@ void Execution::finish() {
   const Claims::Claim claim = dataset_.claims->own_datasets();
   if (!cut_short()) remove_left_over();
   PlacedFiles placed(dataset_);
+  std::vector<const PlannedImage*> listed, lacking;
+  for (const PlannedImage& image : plan_.images)
+    (!image.error && is_in_place(placed, image) ? listed : lacking).push_back(&image);
   std::vector<ImageRecord> records;
-  for (const PlannedImage& image : plan_.images) {
-    if (image.error || !is_in_place(placed, image)) continue;
-    const ImageRecord& record = records.emplace_back(image_record(image, *dataset_.database));
-    if (record.film.capped && !image.elsewhere)
+  for (const PlannedImage* image : listed) {
+    const ImageRecord& record = records.emplace_back(image_record(*image, *dataset_.database));
+    if (record.film.capped && !image->elsewhere)
       result_.capped.emplace_back(record.id, record.film.developed_high.value_or(0));
   }
-  update_manifest(dataset_, plan_.mended, records);
+  const ManifestSources sources = manifest_sources(dataset_.recipe, plan_, listed, placed);
+  if (lacking.empty() && result_.built == 0 && manifest_stands(dataset_, sources, placed)) return;
+  const std::size_t made = records.size();
+  add_older_records(records, dataset_, lacking, cut_short(), placed);
+  DatasetRecord record = dataset_record(dataset_.recipe, plan_.mended, records);
+  if (records.size() > made)
+    record.counts.emplace_back("of_an_earlier_build", records.size() - made);
+  write_manifest(dataset_.folder, record, records);
+  remember_manifest(dataset_, sources);
 }
 
 void Execution::log() {

@@ -55,7 +55,8 @@ class BuildObserver {
 /// uploaded once. An image another process is making now is left for last and then found in the
 /// store. Ends early when `stop` is set: what is finished is recorded, the image under way is not.
 /// Afterwards the manifest lists exactly the images whose files are in place, whichever build put
-/// them there, and (where the build was not cut short) what the plan was to remove is removed.
+/// them there: an image that could not be made, or was not reached, as the build before made it.
+/// What the plan was to remove is removed where the build was not cut short, and else stays listed.
 /// Throws only for what concerns the dataset as a whole.
 BuildResult execute(Dataset& dataset, const Plan& plan, Inputs& inputs, const BuildOptions& options,
                     Disk& disk, const RendererFactory& factory, BuildObserver& observer,

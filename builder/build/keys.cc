@@ -89,6 +89,14 @@ std::string output_path(const std::string& image_id, const std::string& kind) {
   return "images/" + image_id + encoding_of(kind).ending;
 }
 
+std::vector<std::string> output_paths(const OutputSettings& outputs, const std::string& image_id) {
+  std::vector<std::string> paths;
+  if (outputs.image) paths.push_back(output_path(image_id, "image"));
+  if (outputs.mask) paths.push_back(output_path(image_id, "mask"));
+  if (outputs.depth) paths.push_back(output_path(image_id, "depth"));
+  return paths;
+}
+
 KeyMaker::KeyMaker(const Recipe& recipe, Inputs& inputs, TextSet& texts)
     : recipe_(recipe),
       inputs_(inputs),

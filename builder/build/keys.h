@@ -75,4 +75,8 @@ std::string canonical_model(Hash128 geometry, const NormaliseOptions& options);
 /// Path of an output of an image: "images/human.ply/0.png".
 std::string output_path(const std::string& image_id, const std::string& kind);
 
+/// Paths of all files that an image of the recipe consists of; known of images too whose files
+/// cannot be read.
+std::vector<std::string> output_paths(const OutputSettings& outputs, const std::string& image_id);
+
 }  // namespace ds

@@ -30,12 +30,32 @@ bool PlacedFiles::all_in_place(const PlannedImage& image) {
       [&](const OutputFile& output) { return why_not_in_place(image.spec.id, output).empty(); });
 }
 
+bool PlacedFiles::in_place(const ImageRecord& record) {
+  return std::all_of(record.files.begin(), record.files.end(), [&](const FileRecord& wanted) {
+    const std::filesystem::path file = dataset_.folder / wanted.path;
+    const std::optional<FileStamp> stamp = stamp_of(file);
+    if (!stamp) return false;
+    const auto found = placed_.find(wanted.path);
+    if (found != placed_.end() && found->second.object == wanted.hashes.xxh128 &&
+        found->second.stamp == stamp)
+      return true;
+    return hash_file(file).xxh128 == wanted.hashes.xxh128;
+  });
+}
+
+const PlacedFile* PlacedFiles::find(const std::string& path) const {
+  const auto found = placed_.find(path);
+  return found != placed_.end() ? &found->second : nullptr;
+}
+
 std::vector<std::string> PlacedFiles::left_over(const std::vector<PlannedImage>& images,
                                                 Shard shard) const {
+  // The recipe names the files of images too that cannot be made now.
   std::set<std::string> wanted;
   for (const PlannedImage& image : images)
-    for (const OutputFile& output : image.keys.outputs)
-      wanted.insert(output.path);
+    if (!image.refused)
+      for (std::string& path : output_paths(dataset_.recipe.outputs, image.spec.id))
+        wanted.insert(std::move(path));
   std::vector<std::string> paths;
   for (const auto& [path, placed] : placed_)
     if (placed.kind != k_manifest_kind && !wanted.contains(path) && shard.holds(placed.image))

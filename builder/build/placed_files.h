@@ -3,6 +3,7 @@
 
 #include "builder/build/dataset.h"
 #include "builder/build/plan.h"
+#include "manifests/manifest.h"
 
 #include <map>
 #include <string>
@@ -25,7 +26,12 @@ class PlacedFiles {
   std::string why_not_in_place(const std::string& image_id, const OutputFile& output);
   /// Whether that holds for every file of the image. Its keys must be known.
   bool all_in_place(const PlannedImage& image);
-  /// The files of the shard's images that are of none of these images, relative to the folder.
+  /// Whether every file of a manifest's line is there with the bytes that it says.
+  bool in_place(const ImageRecord& record);
+  /// What the database knew of a file; null where nothing.
+  const PlacedFile* find(const std::string& path) const;
+  /// The files of the shard's images that are of none of these images, or of one whose picture is
+  /// refused; relative to the folder.
   std::vector<std::string> left_over(const std::vector<PlannedImage>& images, Shard shard) const;
   /// Writes the stamps of the files that were read and found whole.
   void remember_stamps();

@@ -2,6 +2,7 @@
 #include "builder/build/plan.h"
 
 #include "builder/build/limits.h"
+#include "builder/build/manifest_state.h"
 #include "builder/build/placed_files.h"
 
 #include <algorithm>
@@ -30,7 +31,7 @@ class Planner {
   void plan_files(PlannedImage& image, bool changed);
   void find_kept(PlannedImage& image);
   void add_changes(PlannedImage& image, const PartHashes& before);
-  void check_known_picture(const PlannedImage& image);
+  void check_known_picture(PlannedImage& image);
 
   Dataset& dataset_;
   Database& database_;
@@ -84,12 +85,15 @@ void Planner::plan_files(PlannedImage& image, bool changed) {
 }
 
 /// A picture that was traced and refused is not traced again: it fails as it did.
-void Planner::check_known_picture(const PlannedImage& image) {
+void Planner::check_known_picture(PlannedImage& image) {
   if (force_) return;
   for (const OutputFile& output : image.keys.outputs) {
     if (output.kind != "image") continue;
-    if (const auto known = database_.find_product(output.key))
-      check_limits(dataset_.recipe, image.spec, *known);
+    const std::optional<Product> known = database_.find_product(output.key);
+    if (!known) continue;
+    image.refused = true;
+    check_limits(dataset_.recipe, image.spec, *known);
+    image.refused = false;
   }
 }
 
@@ -145,12 +149,15 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
       PlannedImage failed;
       failed.spec = std::move(image.spec);
       failed.elsewhere = image.elsewhere;
+      failed.refused = image.refused;
+      if (image.refused) failed.keys = std::move(image.keys);
       failed.error = error;
       image = std::move(failed);
     }
     plan.images.push_back(std::move(image));
   }
   plan.to_remove = planner.placed().left_over(plan.images, shard);
+  plan.manifest = manifest_state(dataset, plan, planner.placed());
   inputs.remember();
   planner.placed().remember_stamps();
   return plan;

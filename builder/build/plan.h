@@ -41,7 +41,8 @@ struct PlannedImage {
   std::uint64_t kept_samples = 0;    ///< of a kept film that its film goes on from
   bool record = false;               ///< the database is behind though no file is
   std::vector<std::string> reasons;  ///< why it is stale, each a sentence; empty where it is not
-  std::optional<Error> error;        ///< a file of its cannot be read: only spec, elsewhere hold
+  std::optional<Error> error;        ///< it cannot be made: only spec, elsewhere, refused hold
+  bool refused = false;  ///< its picture was made and is not wanted (check_limits); keys hold too
 
   bool stale() const { return !reasons.empty(); }
   /// Camera samples its film still takes; at most, with an error target.
@@ -54,12 +55,23 @@ struct MendedModel {
   MendedDamage damage;
 };
 
+/// How the manifest that stands in the folder and the one a build would write agree, but for images
+/// that are to be made.
+struct ManifestState {
+  std::vector<std::string> behind;  ///< each what is behind: "class_path of 4 images: car -> van"
+  std::string older_program;        ///< the version that wrote it, where that is another one
+
+  bool current() const { return behind.empty() && older_program.empty(); }
+};
+
 /// A build, before anything is done. A pure reading of recipe, files and database, but for
 /// `Inputs`' memory of hashes.
 struct Plan {
   std::vector<PlannedImage> images;    ///< of all shards, in the order of `expand`
   std::vector<std::string> to_remove;  ///< files dsbuild made, of the shard's images, that no image
-                                       ///< names any more; relative to the folder
+                                       ///< names any more or whose picture is refused; relative to
+                                       ///< the folder
+  ManifestState manifest;
   TextSet texts;
   std::map<std::string, MendedModel> mended;  ///< by model name, of all shards' images
 };

@@ -89,10 +89,13 @@ int dry_run(const Arguments& arguments, const Plan& plan) {
                 {"reused", counts.up_to_date},
                 {"failed", counts.failed},
                 {"stale", counts.stale},
+                {"manifest", to_json(plan.manifest)},
                 {"traced_samples", 0},
                 {"seconds", 0.0}});
-  else
+  else {
     say(Stream::result, "{}\n", summary(counts));
+    print_manifest_line(plan);
+  }
   return counts.failed > 0 ? 1 : 0;
 }
 

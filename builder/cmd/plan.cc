@@ -19,6 +19,7 @@ namespace {
 
 nlohmann::json plan_json(const Plan& plan, const PlanCounts& counts) {
   nlohmann::json object = to_json(counts);
+  object["manifest"] = to_json(plan.manifest);
   object["remove_files"] = plan.to_remove;
   object["stale_images"] = nlohmann::json::array();
   object["failed_images"] = nlohmann::json::array();
@@ -170,6 +171,7 @@ int run_plan(const Arguments& arguments) {
   if (!arguments.json) {
     if (!wish.any) print_plan(Stream::result, plan);
     say(Stream::result, "{}\n", summary(counts));
+    print_manifest_line(plan);
   }
   bool answered = true;
   if (wish.any) {

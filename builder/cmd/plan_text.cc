@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace ds {
 
@@ -38,6 +39,23 @@ PlanCounts count(const Plan& plan) {
   return counts;
 }
 
+std::string manifest_line(const ManifestState& manifest) {
+  std::vector<std::string> behind = manifest.behind;
+  if (!manifest.older_program.empty())
+    behind.push_back("written by dsbuild " + manifest.older_program);
+  if (behind.empty()) return "";
+  return fmt::format("manifest behind: {}; dsbuild build writes it anew", fmt::join(behind, "; "));
+}
+
+void print_manifest_line(const Plan& plan) {
+  if (const std::string line = manifest_line(plan.manifest); !line.empty())
+    say(Stream::result, "{}\n", line);
+}
+
+nlohmann::json to_json(const ManifestState& manifest) {
+  return {{"behind", manifest.behind}, {"older_program", manifest.older_program}};
+}
+
 std::string summary(const PlanCounts& counts) {
   std::string text = fmt::format(
       "{} images: {} to make ({} to trace, {} to develop, {} to take from the store), {} up to "
@@ -66,8 +84,14 @@ void print_plan(Stream to, const Plan& plan) {
     if (image.error) failures[image.error->what()].push_back(image.spec.id);
     if (image.stale()) say(to, "{}\n", line_of(image));
   }
+  std::set<std::string> refused;
+  for (const PlannedImage& image : plan.images)
+    if (image.refused)
+      for (const OutputFile& output : image.keys.outputs)
+        refused.insert(output.path);
   for (const std::string& path : plan.to_remove)
-    say(to, "{}: remove: no image of the recipe has it\n", path);
+    say(to, "{}: remove: {}\n", path,
+        refused.contains(path) ? "its picture is refused" : "no image of the recipe has it");
   for (const auto& [why, ids] : failures)
     say(to, "{}{}: cannot be made: {}\n", ids.front(),
         ids.size() > 1 ? fmt::format(" and {} more", ids.size() - 1) : "", why);

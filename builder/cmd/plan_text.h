@@ -27,6 +27,14 @@ struct PlanCounts {
 };
 PlanCounts count(const Plan& plan);
 
+/// "manifest behind: class_path of 4 images (a.off/0: car -> van); dsbuild build writes it anew";
+/// empty where it is not.
+std::string manifest_line(const ManifestState& manifest);
+/// Prints that line where there is one.
+void print_manifest_line(const Plan& plan);
+/// {"behind": [...], "older_program": "0.1.0"}.
+nlohmann::json to_json(const ManifestState& manifest);
+
 /// "168 images: 3 to make (2 to trace, 1 to develop, 0 to take from the store), 165 up to date, 0
 /// failed".
 std::string summary(const PlanCounts& counts);

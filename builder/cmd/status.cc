@@ -11,11 +11,13 @@ int run_status(const Arguments& arguments) {
   RealDisk disk;
   Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
   Inputs inputs(*dataset.database, stamps_of(arguments));
-  const PlanCounts counts = count(make_plan(dataset, inputs, false));
+  const Plan plan = make_plan(dataset, inputs, false);
+  const PlanCounts counts = count(plan);
   const std::vector<BuildRow> builds = dataset.database->builds(dataset.row.id);
   const std::string store = dataset.store ? dataset.store->folder().string() : "";
   if (arguments.json) {
     nlohmann::json object = to_json(counts);
+    object["manifest"] = to_json(plan.manifest);
     object["name"] = dataset.recipe.name;
     object["recipe"] = dataset.recipe.file.string();
     object["folder"] = dataset.folder.string();
@@ -33,6 +35,7 @@ int run_status(const Arguments& arguments) {
     say(Stream::result, "build    {} UTC, {}, {} built, {}\n", builds.front().started_at,
         builds.front().outcome, builds.front().built, format_duration(builds.front().seconds));
   say(Stream::result, "{}\n", summary(counts));
+  print_manifest_line(plan);
   return counts.failed > 0 ? 1 : 0;
 }
 

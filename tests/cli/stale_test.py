@@ -44,6 +44,39 @@ class StaleTest(TinyCase):
             run = self.run_it(verb, self.recipe, "-o", self.out, "--rehash", "--json")
             self.assertEqual(run.code, 0, run)
 
+    def test_labels_are_stale_without_any_picture(self):
+        self.build("--set", "classes.split={test=1.0}")
+        changed = ["--set", "classes.split={test=0.0}"]
+        said = "manifest behind: split of 8 images (box.off/0: test -> train)"
+        for verb in (["status"], ["plan"], ["build", "-n"]):
+            run = self.run_it(*verb, self.recipe, "-o", self.out, *changed)
+            self.assertEqual(run.code, 0, run)
+            self.assertIn(said, run.out)
+        run = self.run_it("verify", self.recipe, "-o", self.out, *changed)
+        self.assertEqual(run.code, 1, run)
+        self.assertIn("it is behind: split of 8 images", run.out)
+        self.assert_counts(self.build(*changed), built=0, reused=IMAGES)
+        run = self.run_it("status", self.out, "--json")
+        self.assertEqual(run.json["manifest"], {"behind": [], "older_program": ""})
+        self.assertEqual(self.run_it("verify", self.out).code, 0)
+
+    def test_an_input_that_cannot_be_read_takes_nothing_away(self):
+        self.build()
+        files = self.contents()
+        with open(self.tiny / "environments/floor/environment.scn", "a") as file:
+            file.write("scene.lights.sky.colour = 1 1 1\n")
+        run = self.run_it("build", "-n", self.recipe, "-o", self.out)
+        self.assertNotIn("remove", run.out)
+        for arguments in ([], ["-k"]):
+            counts = self.build(*arguments, code=1)
+            self.assert_counts(counts, failed=IMAGES // 2, reused=IMAGES // 2)
+            now = self.contents()
+            dataset = "manifest/dataset.json"
+            self.assertEqual({k: v for k, v in now.items() if not k.startswith("manifest/")},
+                             {k: v for k, v in files.items() if not k.startswith("manifest/")})
+            self.assertEqual(now["manifest/images.jsonl"], files["manifest/images.jsonl"])
+            self.assertIn('"of_an_earlier_build": 4', (self.out / dataset).read_text())
+
 
 if __name__ == "__main__":
     main()

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/build/placed_files.h"
+#include "builder/build/plan.h"
+
+#include <vector>
+
+namespace ds {
+
+/// Hashes of what the manifest is written from, so that asking whether it is behind costs neither
+/// its writing nor its reading. They stand as `product` of the manifest's files in the database.
+struct ManifestSources {
+  Hash128 listing;  ///< images.jsonl: the labels, and of the images listed the keys and files
+  Hash128 labels;   ///< dataset.json: what is in no key: names, classes, splits, licences, settings;
+                    ///< of all the plan's images, whether they are made or not
+  Hash128 program;  ///< checksums.xxh128: the version of dsbuild that writes
+};
+
+/// `listed`: the images of the plan whose files are in place.
+ManifestSources manifest_sources(const Recipe& recipe, const Plan& plan,
+                                 const std::vector<const PlannedImage*>& listed,
+                                 const PlacedFiles& placed);
+
+/// Whether the three files stand as they were written from these sources.
+bool manifest_stands(const Dataset& dataset, const ManifestSources& sources,
+                     const PlacedFiles& placed);
+
+/// Enters the files just written.
+void remember_manifest(Dataset& dataset, const ManifestSources& sources);
+
+/// Reads the manifest only where it is behind, to say in what. `plan` but for its `manifest`.
+ManifestState manifest_state(const Dataset& dataset, const Plan& plan, const PlacedFiles& placed);
+
+}  // namespace ds
