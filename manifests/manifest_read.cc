@@ -272,7 +272,8 @@ void read_mended_models(const json& owner, const SourcePlace& place, Diagnostics
 }
 
 std::string read_manifest_file(const fs::path& file) {
-  if (!fs::is_regular_file(file))
+  std::error_code error;
+  if (!fs::is_regular_file(file, error))
     fail(ErrorKind::asset, "{}: must be there: a dataset has a manifest", file.string());
   return read_text_file(file);
 }

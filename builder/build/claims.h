@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "builder/build/lock_file.h"
 #include "tracer/base/hash.h"
 
 #include <filesystem>
@@ -9,8 +10,7 @@
 
 namespace ds {
 
-/// Locks between processes that share a store, on one file of it. The system drops a lock when its
-/// process ends, however it ends, so a killed build blocks nobody.
+/// Locks between processes that share a store, on one file of it. A killed build blocks nobody.
 ///
 /// One byte stands for "the database is open here" (shared by all, exclusive for whoever sets it
 /// aside), one byte for each image that is being made, at an offset taken from its key, and one for
@@ -19,10 +19,7 @@ namespace ds {
 class Claims {
  public:
   /// Opens or makes the file. Throws Error(io).
-  explicit Claims(const std::filesystem::path& file);
-  ~Claims();
-  Claims(const Claims&) = delete;
-  Claims& operator=(const Claims&) = delete;
+  explicit Claims(const std::filesystem::path& file) : file_(file) {}
 
   /// Held until it goes.
   class Claim {
@@ -48,10 +45,7 @@ class Claims {
   bool try_own_database();
 
  private:
-  bool set(short type, long offset, bool wait);
-
-  std::filesystem::path file_;
-  int fd_;
+  LockFile file_;
 };
 
 }  // namespace ds

@@ -13,11 +13,11 @@ void RealDisk::write(const std::filesystem::path& file, std::span<const std::byt
 }
 
 void RealDisk::link(const std::filesystem::path& from, const std::filesystem::path& to) {
-  std::error_code absent;
-  // rename() does nothing where both names are links to one file already, and would leave the
-  // temporary behind.
-  if (std::filesystem::equivalent(from, to, absent)) return;
   link_file_atomic(from, to);
+}
+
+void RealDisk::copy(const std::filesystem::path& from, const std::filesystem::path& to) {
+  copy_file_atomic(from, to);
 }
 
 void RealDisk::remove(const std::filesystem::path& file) {

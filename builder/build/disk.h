@@ -16,9 +16,11 @@ class Disk {
   /// Replaces the file whole or not at all, and on the disk when it returns. Makes parent folders.
   /// Throws Error(io).
   virtual void write(const std::filesystem::path& file, std::span<const std::byte> bytes) = 0;
-  /// `to` becomes the same bytes as `from` (reflink, hard link or copy), whole or not at all.
+  /// `to` becomes the same bytes as `from`, whole or not at all: as link_file_atomic.
   /// Throws Error(io).
   virtual void link(const std::filesystem::path& from, const std::filesystem::path& to) = 0;
+  /// The same, as a file of its own.
+  virtual void copy(const std::filesystem::path& from, const std::filesystem::path& to) = 0;
   /// No error where there is no such file. Throws Error(io).
   virtual void remove(const std::filesystem::path& file) = 0;
 };
@@ -28,6 +30,7 @@ class RealDisk : public Disk {
  public:
   void write(const std::filesystem::path& file, std::span<const std::byte> bytes) override;
   void link(const std::filesystem::path& from, const std::filesystem::path& to) override;
+  void copy(const std::filesystem::path& from, const std::filesystem::path& to) override;
   void remove(const std::filesystem::path& file) override;
 };
 

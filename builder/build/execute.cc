@@ -55,13 +55,15 @@ class Execution {
         disk_(disk),
         observer_(observer),
         stop_(stop),
-        maker_(dataset, inputs, plan.texts, disk, factory) {}
+        maker_(dataset, inputs, plan.texts, disk, factory,
+               options.copy ? Placing::copy : Placing::share) {}
 
   BuildResult run();
 
  private:
   using Queue = std::deque<const PlannedImage*>;
 
+  void enter_dataset();
   Queue sort_images();
   void make_all(Queue queue);
   bool make_one(const PlannedImage& image);
@@ -96,6 +98,14 @@ void Execution::fail_image(const PlannedImage& image, const std::string& why) {
   observer_.image_failed(image, why);
 }
 
+/// With the recipe and overrides that are built now.
+void Execution::enter_dataset() {
+  const Claims::Claim claim = dataset_.claims->own_datasets();
+  if (const auto row = dataset_.database->find_dataset(dataset_.row.id))
+    dataset_.row.manifest = row->manifest;
+  dataset_.database->put_dataset(dataset_.row);
+}
+
 /// Counts the shard's images and those that need nothing, enters failures, and returns what is to
 /// be made, images of one scene together.
 Execution::Queue Execution::sort_images() {
@@ -106,10 +116,12 @@ Execution::Queue Execution::sort_images() {
     if (image.error) {
       fail_image(image, image.error->what());
     } else if (image.stale()) {
+      if (options_.copy) maker_.part_from_store(image);
       queue.push_back(&image);
     } else {
       ++result_.reused;
       if (image.record) maker_.record(image);
+      if (options_.copy) maker_.part_from_store(image);
     }
   }
   std::stable_sort(queue.begin(), queue.end(), [](const PlannedImage* a, const PlannedImage* b) {
@@ -254,6 +266,7 @@ void Execution::log() {
 }
 
 BuildResult Execution::run() {
+  enter_dataset();
   build_number_ = dataset_.database->begin_build(dataset_.row.id, host_name(), ::getpid());
   clean_up_killed_builds(dataset_, build_number_);
   make_all(sort_images());

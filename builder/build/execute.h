@@ -14,6 +14,7 @@ namespace ds {
 struct BuildOptions {
   bool keep_going = false;  ///< make the images that can be made where others fail
   bool force = false;       ///< trace every image again
+  bool copy = false;        ///< no file shares anything with the store
 };
 
 /// Counts are of the shard's images; images = built + reused + failed + not_reached.

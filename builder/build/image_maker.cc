@@ -45,8 +45,13 @@ Product product_of(Hash128 key, const std::string& kind) {
 }  // namespace
 
 ImageMaker::ImageMaker(Dataset& dataset, Inputs& inputs, const TextSet& texts, Disk& disk,
-                       RendererFactory factory)
-    : dataset_(dataset), inputs_(inputs), texts_(texts), disk_(disk), factory_(std::move(factory)) {
+                       RendererFactory factory, Placing placing)
+    : dataset_(dataset),
+      inputs_(inputs),
+      texts_(texts),
+      disk_(disk),
+      factory_(std::move(factory)),
+      placing_(placing) {
   DS_ASSERT(dataset_.store != nullptr);
 }
 
@@ -186,7 +191,7 @@ void ImageMaker::commit(const PlannedImage& image, const std::vector<MadeProduct
 
 void ImageMaker::place(const PlacedFile& file) {
   const std::filesystem::path target = dataset_.folder / file.path;
-  dataset_.store->place(file.object, target);
+  dataset_.store->place(file.object, target, placing_);
   PlacedFile stamped = file;
   stamped.stamp = stamp_of(target);
   stamped_.push_back(std::move(stamped));
@@ -237,6 +242,16 @@ ImageWork ImageMaker::make(const PlannedImage& image, bool force,
   commit(image, work.made, placed);
   place_all(placed);
   return work.done;
+}
+
+void ImageMaker::part_from_store(const PlannedImage& image) {
+  for (const PlannedFile& file : image.files) {
+    const std::optional<Product> product = dataset_.database->find_product(file.output.key);
+    if (file.state == FileState::in_place && product &&
+        dataset_.store->is_object(dataset_.folder / file.output.path, product->object))
+      place({file.output.path, image.spec.id, file.output.kind, file.output.key, product->object,
+             std::nullopt});
+  }
 }
 
 void ImageMaker::record(const PlannedImage& image) {

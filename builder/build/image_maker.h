@@ -32,7 +32,7 @@ class ImageMaker {
  public:
   /// All must outlive this.
   ImageMaker(Dataset& dataset, Inputs& inputs, const TextSet& texts, Disk& disk,
-             RendererFactory factory);
+             RendererFactory factory, Placing placing = Placing::share);
 
   /// Throws Error for anything that stops this image; another image may go well.
   ImageWork make(const PlannedImage& image, bool force,
@@ -40,6 +40,8 @@ class ImageMaker {
                  const std::atomic<bool>& stop);
   /// Enters an image whose files need nothing.
   void record(const PlannedImage& image);
+  /// Makes copies of the image's files that are in place and hard links to the store.
+  void part_from_store(const PlannedImage& image);
   /// Writes the stamps of the files placed since the last call; they ride along with the next image
   /// otherwise.
   void remember_stamps();
@@ -74,6 +76,7 @@ class ImageMaker {
   const TextSet& texts_;
   Disk& disk_;
   RendererFactory factory_;
+  Placing placing_;
   std::unique_ptr<Renderer> renderer_;
   std::vector<PlacedFile> stamped_;
   std::vector<const ImageSpec*> upcoming_;  ///< announced before there was a renderer

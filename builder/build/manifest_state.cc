@@ -217,6 +217,20 @@ ManifestSources manifest_sources(const Recipe& recipe, const Plan& plan,
   return sources;
 }
 
+Hash128 what_is_made(const Recipe& recipe, const Plan& plan) {
+  std::string text;
+  try {
+    add_hash(text, labels_of(description(recipe, plan), plan));
+  } catch (const Error& error) {
+    text += error.what();
+  }
+  for (const PlannedImage& image : plan.images) {
+    add_hash(text, image.keys.render);
+    add_hash(text, image.keys.files);
+  }
+  return hash_text(text);
+}
+
 bool manifest_stands(const Dataset& dataset, const ManifestSources& sources,
                      const PlacedFiles& placed) {
   const auto written_from = [&](const char* path, Hash128 source) {
@@ -262,7 +276,13 @@ ManifestState manifest_state(const Dataset& dataset, const Plan& plan, const Pla
     if (const std::string why = why_not_as_written(dataset, path, placed); !why.empty())
       state.behind.push_back(why);
   if (!state.behind.empty()) return state;
-  const ManifestSources sources = manifest_sources(dataset.recipe, plan, listed, placed);
+  ManifestSources sources;
+  try {
+    sources = manifest_sources(dataset.recipe, plan, listed, placed);
+  } catch (const Error& error) {  // a licence that cannot be read: no reason to plan nothing
+    state.behind.emplace_back(error.what());
+    return state;
+  }
   if (placed.find(k_checksums_file)->product != sources.program)
     state.older_program = older_program(dataset.folder);
   if (placed.find(k_dataset_file)->product != sources.labels)

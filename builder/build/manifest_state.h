@@ -22,6 +22,10 @@ ManifestSources manifest_sources(const Recipe& recipe, const Plan& plan,
                                  const std::vector<const PlannedImage*>& listed,
                                  const PlacedFiles& placed);
 
+/// Hash of what a build of the plan makes of the folder: which images of which keys and labels. The
+/// same for all shards, and whether they are made or not.
+Hash128 what_is_made(const Recipe& recipe, const Plan& plan);
+
 /// Whether the three files stand as they were written from these sources.
 bool manifest_stands(const Dataset& dataset, const ManifestSources& sources,
                      const PlacedFiles& placed);

@@ -2,7 +2,7 @@
 #include "builder/build/older_records.h"
 
 #include "builder/build/keys.h"
-#include "tracer/base/error.h"
+#include "tracer/base/disk_error.h"
 #include "tracer/base/log.h"
 
 #include <algorithm>
@@ -21,6 +21,17 @@ std::vector<ImageRecord> read_older(const std::filesystem::path& folder) {
     warn(fmt::format("{}; images that are not made anew are left out of the new one",
                      damaged.what()));
     return {};
+  }
+}
+
+/// A file that cannot be looked at is not known to be what a line says.
+bool in_place(PlacedFiles& placed, const ImageRecord& record) {
+  try {
+    return placed.in_place(record);
+  } catch (const DiskFailed&) {
+    throw;
+  } catch (const Error&) {
+    return false;
   }
 }
 
@@ -52,7 +63,7 @@ void add_older_records(std::vector<ImageRecord>& records, const Dataset& dataset
         return std::find(wanted.begin(), wanted.end(), file.path) == wanted.end();
       });
     }
-    if (!record.files.empty() && placed.in_place(record)) records.push_back(std::move(record));
+    if (!record.files.empty() && in_place(placed, record)) records.push_back(std::move(record));
   }
 }
 

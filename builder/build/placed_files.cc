@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/placed_files.h"
 
+#include "tracer/base/files.h"
+
 #include <algorithm>
 #include <filesystem>
 #include <optional>
@@ -19,6 +21,10 @@ std::string PlacedFiles::why_not_in_place(const std::string& image_id, const Out
   if (!stamp) return output.path + " is missing";
   if (placed.stamp == stamp && stamps_ == Stamps::trust) return "";
   if (hash_file(file).xxh128 != placed.object) return output.path + " was changed on the disk";
+  // Its permissions were changed, or an older dsbuild placed it for root: an editor would write into
+  // the store.
+  if (dataset_.store && dataset_.store->is_object(file, placed.object) && may_write(file))
+    return output.path + " can be written to although it is one file with the store's";
   placed.stamp = stamp;
   restamped_.push_back(placed);
   return "";

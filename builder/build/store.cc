@@ -16,14 +16,6 @@ namespace fs = std::filesystem;
 constexpr const char* k_objects = "objects";
 constexpr const char* k_records = "records";
 
-/// Output files may be hard links to objects: an editor that writes in place must be refused.
-void make_read_only(const fs::path& file) {
-  std::error_code error;
-  fs::permissions(file, fs::perms::owner_read | fs::perms::group_read | fs::perms::others_read,
-                  error);
-  if (error) fail_system(file, "make read-only", error.value());
-}
-
 }  // namespace
 
 fs::path Store::path_of(const char* kind, Hash128 hash) const {
@@ -49,7 +41,7 @@ Hash128 Store::put(std::span<const std::byte> bytes) {
   if (intact(object)) return object;
   const fs::path file = path_of(k_objects, object);
   disk_.write(file, bytes);
-  make_read_only(file);
+  remove_write_permission(file);  // output files may be hard links to it
   return object;
 }
 
@@ -66,8 +58,17 @@ std::optional<std::vector<std::byte>> Store::get(Hash128 object) {
   return read_whole(path_of(k_objects, object), object);
 }
 
-void Store::place(Hash128 object, const fs::path& target) {
-  disk_.link(path_of(k_objects, object), target);
+void Store::place(Hash128 object, const fs::path& target, Placing placing) {
+  const fs::path file = path_of(k_objects, object);
+  if (placing == Placing::copy)
+    disk_.copy(file, target);
+  else
+    disk_.link(file, target);
+}
+
+bool Store::is_object(const fs::path& file, Hash128 object) const {
+  std::error_code absent;
+  return fs::equivalent(file, path_of(k_objects, object), absent);
 }
 
 void Store::put_record(std::string_view text) {
@@ -76,10 +77,11 @@ void Store::put_record(std::string_view text) {
 
 void Store::visit_records(const std::function<void(const std::string& text)>& visit) {
   std::error_code error;
-  for (const fs::directory_entry& entry :
-       fs::recursive_directory_iterator(folder_ / k_records, error)) {
-    if (!entry.is_regular_file()) continue;
-    const fs::path& file = entry.path();
+  for (fs::recursive_directory_iterator entry(folder_ / k_records, error), end;
+       !error && entry != end; entry.increment(error)) {
+    std::error_code vanished;
+    if (!entry->is_regular_file(vanished)) continue;
+    const fs::path& file = entry->path();
     const auto hash =
         Hash128::from_hex(file.parent_path().filename().string() + file.filename().string());
     if (!hash) continue;  // a killed writer's temporary

@@ -15,6 +15,12 @@
 
 namespace ds {
 
+/// How an object comes into a dataset's folder.
+enum class Placing {
+  share,  ///< its blocks or its file where writing to the placed file cannot reach the store
+  copy,
+};
+
 /// Content-addressed files, which any number of datasets and processes may share:
 ///   objects/ab/cdef...   bytes whose XXH3-128 is abcdef..., read-only
 ///   records/ab/cdef...   what was made from which key (see made_record.h), named by the hash of
@@ -33,9 +39,10 @@ class Store {
   /// Whether there is such an object, whole.
   bool intact(Hash128 object);
   std::optional<std::vector<std::byte>> get(Hash128 object);
-  /// Makes `target` the object's bytes (reflink, hard link or copy). `intact` must have been asked
-  /// before.
-  void place(Hash128 object, const std::filesystem::path& target);
+  /// Makes `target` the object's bytes. `intact` must have been asked before.
+  void place(Hash128 object, const std::filesystem::path& target, Placing placing = Placing::share);
+  /// Whether the file is a hard link to the object.
+  bool is_object(const std::filesystem::path& file, Hash128 object) const;
 
   void put_record(std::string_view text);
   /// Calls `visit` with the text of every whole record, in no particular order.

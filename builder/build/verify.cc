@@ -24,7 +24,13 @@ void check_file(VerifyResult& result, const fs::path& folder, const FileRecord& 
     result.findings.push_back({Finding::Kind::missing, wanted.path, "the file is missing"});
     return;
   }
-  const FileHashes found = hash_file(file);
+  FileHashes found;
+  try {
+    found = hash_file(file);
+  } catch (const Error& error_of_one) {
+    result.findings.push_back({Finding::Kind::changed, wanted.path, error_of_one.what()});
+    return;
+  }
   if (found.xxh128 == wanted.hashes.xxh128 && found.sha256 == wanted.hashes.sha256 &&
       found.size_bytes == wanted.hashes.size_bytes)
     return;
@@ -76,7 +82,9 @@ void check_checksums(VerifyResult& result, const fs::path& folder,
     if (listed.contains(path)) continue;
     if (!path.starts_with("manifest/"))
       add(k_checksums, "it lists " + path + ", which images.jsonl does not");
-    else if (fs::is_regular_file(folder / path, error) && hash_file(folder / path).xxh128 != hash)
+    else if (!fs::is_regular_file(folder / path, error))
+      result.findings.push_back({Finding::Kind::missing, path, "the file is missing"});
+    else if (hash_file(folder / path).xxh128 != hash)
       add(path, "it has another checksum than " + std::string(k_checksums) + " says");
   }
 }
@@ -85,16 +93,21 @@ void find_extra(VerifyResult& result, const fs::path& folder,
                 const std::map<std::string, Hash128>& listed) {
   const std::set<std::string> own{"manifest/images.jsonl", "manifest/dataset.json", k_checksums};
   std::vector<std::string> extra;
-  for (auto entry = fs::recursive_directory_iterator(folder);
-       entry != fs::recursive_directory_iterator(); ++entry) {
+  std::error_code error;
+  fs::recursive_directory_iterator entry(folder, error);
+  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
     const std::string path = entry->path().lexically_relative(folder).generic_string();
     if (path == ".dsbuild") {
       entry.disable_recursion_pending();
       continue;
     }
-    if (!entry->is_directory() && !own.contains(path) && !listed.contains(path))
+    std::error_code vanished;
+    if (!entry->is_directory(vanished) && !own.contains(path) && !listed.contains(path))
       extra.push_back(path);
   }
+  if (error)
+    result.findings.push_back(
+        {Finding::Kind::extra, ".", "its folders cannot be listed: " + error.message()});
   std::sort(extra.begin(), extra.end());
   for (const std::string& path : extra)
     result.findings.push_back({Finding::Kind::extra, path, "nothing lists it"});

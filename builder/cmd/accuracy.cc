@@ -58,7 +58,7 @@ void print(const Accuracy& accuracy, const fs::path& report, const fs::path& csv
 
 int run_accuracy(const Arguments& arguments) {
   RealDisk disk;
-  Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
+  Dataset dataset = open_dataset(arguments.request(), Access::inputs, disk);
   if (!dataset.recipe.outputs.image)
     fail(ErrorKind::usage,
          "{}: wanted a recipe whose pictures are traced, found outputs.image = false; measure it "

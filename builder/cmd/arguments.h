@@ -29,8 +29,10 @@ struct Arguments {
   bool json = false, dry_run = false, keep_going = false, force = false, explain = false;
   bool effects = false;
   bool rehash = false;
+  bool adopt = false;
+  bool copy = false;
 
-  DatasetRequest request() const { return {target, overrides, output_folder, store_folder}; }
+  DatasetRequest request() const { return {target, overrides, output_folder, store_folder, adopt}; }
 };
 
 /// The options a verb can have. Each is declared once, in command_line.cc.
@@ -46,6 +48,8 @@ enum class Option {
   keep_going,
   force,
   rehash,
+  adopt,
+  copy,
   explain,
   shard,
   effects,

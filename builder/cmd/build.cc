@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/execute.h"
+#include "builder/build/folder_lock.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/progress.h"
 #include "builder/cmd/stop_signal.h"
@@ -106,12 +107,23 @@ int run_build(const Arguments& arguments) {
   if (!arguments.dry_run) std::signal(SIGPIPE, SIG_IGN);
   const Shard shard = read_shard(arguments.shard);
   RealDisk disk;
-  Dataset dataset =
-      open_dataset(arguments.request(), arguments.dry_run ? Access::look : Access::build, disk);
-  Inputs inputs(*dataset.database, stamps_of(arguments));
-  const Plan plan = make_plan(dataset, inputs, arguments.force, shard);
+  if (arguments.dry_run) {
+    Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
+    Inputs inputs(*dataset.database, stamps_of(arguments));
+    const Plan plan = make_plan(dataset, inputs, arguments.force, shard);
+    warn_of_mended(plan);
+    return dry_run(arguments, plan);
+  }
+  Dataset dataset = open_dataset(arguments.request(), Access::build, disk);
+  const auto waits_for = [&](const std::string& who) {
+    say(Stream::people, "dsbuild: {}: waiting for another build that makes something else: {}\n",
+        dataset.folder.string(), who);
+  };
+  const SolePlan sole =
+      make_sole_plan(dataset, stamps_of(arguments), arguments.force, shard, waits_for);
+  Inputs& inputs = *sole.inputs;
+  const Plan& plan = sole.plan;
   warn_of_mended(plan);
-  if (arguments.dry_run) return dry_run(arguments, plan);
   if (arguments.explain) print_plan(arguments.json ? Stream::people : Stream::report, plan);
 
   const RendererFactory factory = [&] {
@@ -124,7 +136,7 @@ int run_build(const Arguments& arguments) {
     // Only now: planning may be ended anywhere, and needs nobody to wait for it.
     const std::atomic<bool>& stop = stop_on_signal();
     Progress progress(arguments.keep_going);
-    result = execute(dataset, plan, inputs, {arguments.keep_going, arguments.force}, disk, factory,
+    result = execute(dataset, plan, inputs, {arguments.keep_going, arguments.force, arguments.copy}, disk, factory,
                      progress, stop);
   }
   for (const auto& [what, why] : result.failures)

@@ -66,6 +66,14 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
       verb.add_flag("--rehash", to.rehash,
                     "read every model and output, also where size, times and inode are as before");
       return;
+    case Option::adopt:
+      verb.add_flag("--adopt", to.adopt,
+                    "take the folder over though it belongs to another recipe");
+      return;
+    case Option::copy:
+      verb.add_flag("--copy", to.copy,
+                    "make every output a file of its own, which shares nothing with the store");
+      return;
     case Option::explain:
       verb.add_flag("--explain", to.explain, "say why each image is made");
       return;

@@ -9,7 +9,7 @@ namespace ds {
 
 int run_log(const Arguments& arguments) {
   RealDisk disk;
-  const Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
+  const Dataset dataset = open_dataset(arguments.request(), Access::records, disk);
   nlohmann::json array = nlohmann::json::array();
   for (const BuildRow& build : dataset.database->builds(dataset.row.id)) {
     array.push_back({{"number", build.number},

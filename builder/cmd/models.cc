@@ -40,7 +40,7 @@ nlohmann::json to_json(const std::string& name, const MeshReport& report) {
 
 int run_models(const Arguments& arguments) {
   RealDisk disk;
-  const Recipe recipe = open_dataset(arguments.request(), Access::look, disk).recipe;
+  const Recipe recipe = open_dataset(arguments.request(), Access::inputs, disk).recipe;
   nlohmann::json models = nlohmann::json::array();
   std::size_t failed = 0;
   if (!arguments.json) print_header();

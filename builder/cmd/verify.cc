@@ -33,6 +33,41 @@ void verify_dataset(VerifyResult& result, const Arguments& arguments) {
                     told, stop_on_signal());
 }
 
+/// Why the folder is not compared with its recipe, where that can be told beforehand.
+std::string why_alone(const Arguments& arguments) {
+  if (is_bare_folder(arguments)) return "the folder has no .dsbuild that names its recipe";
+  const auto recipe = recipe_left_behind(arguments.target);
+  if (!recipe) return "";
+  return fmt::format("the folder is a copy, or was moved without its recipe {}; name the recipe and "
+                     "-o {} to compare them",
+                     recipe->string(), arguments.target);
+}
+
+/// Compares a folder with what made it, as far as that is there: for its files, the folder is
+/// enough. Returns why it was not compared; empty where it was.
+std::string verify_folder(VerifyResult& result, const Arguments& arguments) {
+  const std::string why = why_alone(arguments);
+  if (arguments.rerender > 0) {
+    if (!why.empty())
+      fail(ErrorKind::usage, "{}: --rerender needs the recipe: {}", arguments.target, why);
+    verify_dataset(result, arguments);
+    return "";
+  }
+  if (!why.empty()) return why;
+  try {
+    verify_dataset(result, arguments);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void print_not_checked(const std::string& why) {
+  const std::size_t line_end = why.find('\n');
+  say(Stream::result, "not checked: whether it is what its recipe asks for: {}{}\n",
+      why.substr(0, line_end), line_end == std::string::npos ? "" : " ...");
+}
+
 void print_findings(const VerifyResult& result) {
   for (const Finding& finding : result.findings)
     say(Stream::result, "{}: {}: {}\n", to_string(finding.kind), finding.path, finding.what);
@@ -47,13 +82,12 @@ void print_findings(const VerifyResult& result) {
 }  // namespace
 
 int run_verify(const Arguments& arguments) {
-  const bool bare = is_bare_folder(arguments);
-  if (bare && arguments.rerender > 0)
-    fail(ErrorKind::usage,
-         "{}: --rerender needs the recipe; the folder has no database that names it",
-         arguments.target);
   VerifyResult result = verify_files(dataset_folder(arguments.request()));
-  if (!bare) verify_dataset(result, arguments);
+  std::string not_checked;
+  if (std::filesystem::is_directory(arguments.target))
+    not_checked = verify_folder(result, arguments);
+  else
+    verify_dataset(result, arguments);
   if (arguments.json) {
     nlohmann::json findings = nlohmann::json::array();
     for (const Finding& finding : result.findings)
@@ -63,9 +97,11 @@ int run_verify(const Arguments& arguments) {
                 {"files", result.files},
                 {"rerendered", result.rerendered},
                 {"differences", result.findings.size()},
+                {"not_checked", not_checked.empty() ? nlohmann::json() : nlohmann::json(not_checked)},
                 {"findings", findings}});
   } else {
     print_findings(result);
+    if (!not_checked.empty()) print_not_checked(not_checked);
   }
   return result.findings.empty() ? 0 : 1;
 }

@@ -48,6 +48,12 @@ Database::Database(const std::filesystem::path& file) : connection_(file) {
   connection_.check();
 }
 
+std::int64_t Database::data_version() {
+  Statement row = connection_.prepare("PRAGMA data_version");
+  row.step();
+  return row.integer(0);
+}
+
 void Database::put_text(Hash128 hash, std::string_view text) {
   connection_.prepare("INSERT OR IGNORE INTO text VALUES (?1, ?2)")
       .bind(1, hash.hex())

@@ -93,6 +93,8 @@ class Database {
   /// file was made by a newer dsbuild. An empty path is a database in memory.
   explicit Database(const std::filesystem::path& file);
   Connection& connection() { return connection_; }
+  /// Another number once another connection has written.
+  std::int64_t data_version();
 
   /// Canonical texts by their hash.
   void put_text(Hash128 hash, std::string_view text);

@@ -117,7 +117,8 @@ bool reflink(const fs::path& from, const fs::path& to) {
 }  // namespace
 
 std::string read_text_file(const fs::path& path) {
-  if (fs::is_directory(path))
+  std::error_code unknown;  // what keeps us from looking keeps us from opening too, and is told then
+  if (fs::is_directory(path, unknown))
     fail(ErrorKind::io, "{}: wanted a file, found a folder", path.string());
   std::ifstream in(path, std::ios::binary);
   if (!in) fail_errno(path, "open");
@@ -152,15 +153,42 @@ void write_file_atomic(const fs::path& path, std::string_view text) {
 
 void link_file_atomic(const fs::path& from, const fs::path& to) {
   const fs::path target = prepare_target(to);
-  TemporaryName temporary(target);
-  if (!reflink(from, temporary.path())) {
-    ::unlink(temporary.path().c_str());
-    if (::link(from.c_str(), temporary.path().c_str()) != 0) {
-      write_file_atomic(target, read_text_file(from));
+  {
+    TemporaryName temporary(target);
+    if (reflink(from, temporary.path())) {
+      temporary.rename_to(target);
       return;
     }
   }
-  temporary.rename_to(target);
+  remove_write_permission(from);
+  if (!may_write(from)) {
+    std::error_code absent;
+    // rename() does nothing where both names are links to one file already, and would leave the
+    // temporary behind.
+    if (fs::equivalent(from, target, absent)) return;
+    TemporaryName temporary(target);
+    if (::link(from.c_str(), temporary.path().c_str()) == 0) {
+      temporary.rename_to(target);
+      return;
+    }
+  }
+  copy_file_atomic(from, target);
+}
+
+void copy_file_atomic(const fs::path& from, const fs::path& to) {
+  write_file_atomic(to, read_text_file(from));
+}
+
+bool may_write(const fs::path& file) {
+  return ::faccessat(AT_FDCWD, file.c_str(), W_OK, AT_EACCESS) == 0;
+}
+
+void remove_write_permission(const fs::path& file) {
+  constexpr auto k_all_write =
+      fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
+  std::error_code ignored;
+  if ((fs::status(file, ignored).permissions() & k_all_write) == fs::perms::none) return;
+  fs::permissions(file, k_all_write, fs::perm_options::remove, ignored);
 }
 
 TemporaryFolder::TemporaryFolder() {

@@ -20,10 +20,22 @@ std::string read_text_file(const std::filesystem::path& path);
 void write_file_atomic(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void write_file_atomic(const std::filesystem::path& path, std::string_view text);
 
-/// Makes `to` the same bytes as `from` without sharing later writes where the file system can
-/// (reflink), else by a hard link, else by a copy; atomic as above. `from` must be a finished file
-/// that nobody writes to again.
+/// Makes `to` the same bytes as `from`; atomic as above. By a reflink, which shares no later write,
+/// where the file system can; else by a hard link that this process may not write through, so that
+/// no editor reaches `from`: `from` loses its write permissions. Where that is not enough (root
+/// writes to any file) or there can be no further link (another file system, too many links), by a
+/// copy.
 void link_file_atomic(const std::filesystem::path& from, const std::filesystem::path& to);
+
+/// Makes `to` a file of its own with the bytes of `from`; atomic as above.
+void copy_file_atomic(const std::filesystem::path& from, const std::filesystem::path& to);
+
+/// Whether this process may write to the file as its permissions are: root may to any.
+bool may_write(const std::filesystem::path& file);
+
+/// Takes everybody's write permission away; what is lost of that on a file of somebody else, or on
+/// a file system without permissions, `may_write` tells.
+void remove_write_permission(const std::filesystem::path& file);
 
 /// fsync of a folder, so that a rename in it survives a power cut. Throws Error(io).
 void sync_folder(const std::filesystem::path& folder);

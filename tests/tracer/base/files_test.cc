@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cerrno>
+#include <fstream>
 #include <iterator>
 
 namespace ds {
@@ -69,6 +70,41 @@ TEST(FilesTest, what_a_disk_refuses_to_all_names_is_told_apart) {
     } catch (const Error&) {
     }
   }
+}
+
+TEST(FilesTest, what_is_written_to_a_linked_file_does_not_reach_the_other) {
+  const TemporaryFolder folder;
+  const fs::path from = folder.path() / "from", to = folder.path() / "to";
+  write_file_atomic(from, "bytes");
+  // Twice: over a hard link that was made writable too.
+  for (int time = 0; time < 2; ++time) {
+    link_file_atomic(from, to);
+    EXPECT_EQ(may_write(to) && fs::equivalent(from, to), false);
+    std::ofstream(to) << "other";  // fails where the file is a hard link: root gets a copy
+    EXPECT_EQ(read_text_file(from), "bytes");
+    fs::permissions(from, fs::perms::owner_write, fs::perm_options::add);
+  }
+}
+
+TEST(FilesTest, a_hard_link_of_before_becomes_a_file_that_is_safe_to_edit) {
+  const TemporaryFolder folder;
+  const fs::path from = folder.path() / "from", to = folder.path() / "to";
+  write_file_atomic(from, "bytes");
+  fs::create_hard_link(from, to);
+  ASSERT_TRUE(may_write(to));
+  link_file_atomic(from, to);
+  EXPECT_EQ(may_write(to) && fs::equivalent(from, to), false);
+  EXPECT_EQ(read_text_file(to), "bytes");
+}
+
+TEST(FilesTest, a_copy_shares_nothing) {
+  const TemporaryFolder folder;
+  const fs::path from = folder.path() / "from", to = folder.path() / "to";
+  write_file_atomic(from, "bytes");
+  remove_write_permission(from);
+  copy_file_atomic(from, to);
+  EXPECT_FALSE(fs::equivalent(from, to));
+  EXPECT_NE(fs::status(to).permissions() & fs::perms::owner_write, fs::perms::none);
 }
 
 TEST(FilesTest, reading_tells_the_path_and_the_reason) {
