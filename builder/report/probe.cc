@@ -46,8 +46,9 @@ class ProbeBuild {
              const std::vector<ImageSpec>& images, Inputs& inputs, Renderer& renderer,
              const std::filesystem::path& folder)
       : plan_(plan_of(recipe, spp, std::move(target), images, inputs, folder)),
-        maker_(dataset_, inputs, plan_.texts, disk_,
-               [&renderer] { return std::make_unique<SharedRenderer>(renderer); }) {}
+        maker_(
+            dataset_, inputs, plan_.texts, disk_,
+            [&renderer] { return std::make_unique<SharedRenderer>(renderer); }, Placing::share) {}
 
   /// Seconds that making the image takes.
   double make(const std::string& id, const ProbeWatch& watch) {
