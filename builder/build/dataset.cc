@@ -70,10 +70,9 @@ void write_pointer(const fs::path& folder, const Pointer& pointer, Disk& disk) {
   const fs::path state = folder / k_state_folder;
   // A store inside the dataset's folder moves with it; any other stays where it is.
   const bool own = pointer.store == state;
-  const std::string text =
-      fmt::format("{}\n{}\n{}\n{}\n{}\n", k_pointer_header, pointer.id,
-                  own ? "." : pointer.store.string(), pointer.folder.string(),
-                  pointer.recipe.string());
+  const std::string text = fmt::format("{}\n{}\n{}\n{}\n{}\n", k_pointer_header, pointer.id,
+                                       own ? "." : pointer.store.string(), pointer.folder.string(),
+                                       pointer.recipe.string());
   disk.write(pointer_path(folder), bytes_of(text));
 }
 
@@ -94,8 +93,8 @@ fs::path place_of(const fs::path& file) {
 
 bool same_place(const fs::path& a, const fs::path& b) {
   std::error_code error;
-  return a == b || (a.filename() == b.filename() &&
-                    fs::equivalent(a.parent_path(), b.parent_path(), error));
+  return a == b ||
+         (a.filename() == b.filename() && fs::equivalent(a.parent_path(), b.parent_path(), error));
 }
 
 /// Where a path of when the folder was built leads now: to the same place seen from the folder,
@@ -234,8 +233,7 @@ Dataset open_folder(const DatasetRequest& request, Access access, Disk& disk) {
     working_folder.emplace(dataset.row.working_folder);
   }
   dataset.recipe = read_recipe(dataset.row.recipe, row->overrides);
-  if (access == Access::build)
-    dataset.row.id = enter_folder(dataset, request, *pointer, disk).id;
+  if (access == Access::build) dataset.row.id = enter_folder(dataset, request, *pointer, disk).id;
   return dataset;
 }
 

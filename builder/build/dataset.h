@@ -22,13 +22,13 @@ struct DatasetRequest {
   std::filesystem::path
       output_folder;  ///< -o; empty: out/<name>, or the target where it is a folder
   std::filesystem::path
-      store_folder;  ///< --store; empty: as before, at first <output folder>/.dsbuild
+      store_folder;    ///< --store; empty: as before, at first <output folder>/.dsbuild
   bool adopt = false;  ///< --adopt: take the folder though it belongs to another recipe
 };
 
 enum class Access {
-  look,    ///< makes no folder and no file; a dataset never built has an empty database in memory
-  inputs,  ///< as look, whoever owns the folder: for what is about a recipe and its files only
+  look,     ///< makes no folder and no file; a dataset never built has an empty database in memory
+  inputs,   ///< as look, whoever owns the folder: for what is about a recipe and its files only
   records,  ///< as look, without the recipe where a folder is given: for what was done before
   build,
 };

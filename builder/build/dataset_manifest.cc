@@ -89,7 +89,8 @@ DatasetRecord dataset_record(const Recipe& recipe, const std::map<std::string, M
   for (const auto& [model, what] : mended)
     if (models.contains(model)) record.mended_models.emplace_back(model, what.damage);
   std::vector<std::pair<std::string, std::string>> texts;
-  const auto add_licences = [&](const char* kind, const std::vector<std::filesystem::path>& assets) {
+  const auto add_licences = [&](const char* kind,
+                                const std::vector<std::filesystem::path>& assets) {
     for (auto& licence : licences_beside(kind, assets))
       texts.push_back(std::move(licence));
   };

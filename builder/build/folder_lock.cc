@@ -36,8 +36,8 @@ void write_who(int descriptor, const std::string& who) {
 }
 
 std::string who_builds(const Dataset& dataset) {
-  std::string text = fmt::format("process {} on {}, {}", ::getpid(), host_name(),
-                                 dataset.recipe.file.string());
+  std::string text =
+      fmt::format("process {} on {}, {}", ::getpid(), host_name(), dataset.recipe.file.string());
   for (const std::string& assignment : dataset.row.overrides)
     text += " --set " + assignment;
   return text;

@@ -61,8 +61,7 @@ void LockFile::release(long offset) {
 bool LockFile::others_hold(long from, long to) const {
   if (from >= to) return false;
   struct flock range = range_of(F_WRLCK, from, to - from);
-  if (::fcntl(fd_, F_OFD_GETLK, &range) != 0)
-    fail_system(file_, "look at the locks of", errno);
+  if (::fcntl(fd_, F_OFD_GETLK, &range) != 0) fail_system(file_, "look at the locks of", errno);
   return range.l_type != F_UNLCK;
 }
 

@@ -100,8 +100,8 @@ void compare_images(const Plan& plan, const std::vector<ImageRecord>& records,
       if (count++ == 0) first = fmt::format("{}: {}", image.spec.id, change(before, after));
     }
     if (count > 0)
-      behind.push_back(fmt::format("{} of {} image{} ({})", label.name, count,
-                                   count == 1 ? "" : "s", first));
+      behind.push_back(
+          fmt::format("{} of {} image{} ({})", label.name, count, count == 1 ? "" : "s", first));
   }
 }
 
@@ -112,8 +112,7 @@ void add_named(std::vector<std::string>& behind, const char* what,
   const auto shown =
       names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), k_most_named));
   std::string text = fmt::format("{}: {}", what, fmt::join(names.begin(), shown, ", "));
-  if (names.size() > k_most_named)
-    text += fmt::format(" and {} more", names.size() - k_most_named);
+  if (names.size() > k_most_named) text += fmt::format(" and {} more", names.size() - k_most_named);
   behind.push_back(std::move(text));
 }
 
@@ -141,7 +140,8 @@ std::map<std::string, std::string> settings_of(const std::string& recipe_text) {
   std::istringstream lines(recipe_text);
   for (std::string line; std::getline(lines, line);) {
     const std::size_t middle = line.find(" = ");
-    if (middle != std::string::npos) settings.emplace(line.substr(0, middle), line.substr(middle + 3));
+    if (middle != std::string::npos)
+      settings.emplace(line.substr(0, middle), line.substr(middle + 3));
   }
   return settings;
 }
@@ -237,8 +237,7 @@ bool manifest_stands(const Dataset& dataset, const ManifestSources& sources,
     const PlacedFile* known = placed.find(path);
     return known != nullptr && known->product == source;
   };
-  return dataset.row.manifest == sources.listing &&
-         written_from(k_images_file, sources.listing) &&
+  return dataset.row.manifest == sources.listing && written_from(k_images_file, sources.listing) &&
          written_from(k_dataset_file, sources.labels) &&
          written_from(k_checksums_file, sources.program) &&
          std::all_of(k_manifest_files.begin(), k_manifest_files.end(), [&](const char* path) {

@@ -12,8 +12,8 @@ namespace ds {
 /// its writing nor its reading. They stand as `product` of the manifest's files in the database.
 struct ManifestSources {
   Hash128 listing;  ///< images.jsonl: the labels, and of the images listed the keys and files
-  Hash128 labels;   ///< dataset.json: what is in no key: names, classes, splits, licences, settings;
-                    ///< of all the plan's images, whether they are made or not
+  Hash128 labels;  ///< dataset.json: what is in no key: names, classes, splits, licences, settings;
+                   ///< of all the plan's images, whether they are made or not
   Hash128 program;  ///< checksums.xxh128: the version of dsbuild that writes
 };
 

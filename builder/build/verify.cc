@@ -235,7 +235,8 @@ void verify_against_plan(VerifyResult& result, Dataset& dataset, const Plan& pla
           {Finding::Kind::extra, id, "the manifest names it, the recipe does not"});
   for (const auto& [path, placed] : dataset.database->placed_files(dataset.row.id)) {
     const fs::path file = dataset.folder / path;
-    if (placed.kind == k_manifest_kind && stamp_of(file) && hash_file(file).xxh128 != placed.object) {
+    if (placed.kind == k_manifest_kind && stamp_of(file) &&
+        hash_file(file).xxh128 != placed.object) {
       result.findings.push_back(
           {Finding::Kind::manifest, path, "it is not the one the last build wrote"});
       return;

@@ -136,8 +136,8 @@ int run_build(const Arguments& arguments) {
     // Only now: planning may be ended anywhere, and needs nobody to wait for it.
     const std::atomic<bool>& stop = stop_on_signal();
     Progress progress(arguments.keep_going);
-    result = execute(dataset, plan, inputs, {arguments.keep_going, arguments.force, arguments.copy}, disk, factory,
-                     progress, stop);
+    result = execute(dataset, plan, inputs, {arguments.keep_going, arguments.force, arguments.copy},
+                     disk, factory, progress, stop);
   }
   for (const auto& [what, why] : result.failures)
     say(Stream::people, "dsbuild: error: {}: {}\n", what, why);

@@ -38,9 +38,10 @@ std::string why_alone(const Arguments& arguments) {
   if (is_bare_folder(arguments)) return "the folder has no .dsbuild that names its recipe";
   const auto recipe = recipe_left_behind(arguments.target);
   if (!recipe) return "";
-  return fmt::format("the folder is a copy, or was moved without its recipe {}; name the recipe and "
-                     "-o {} to compare them",
-                     recipe->string(), arguments.target);
+  return fmt::format(
+      "the folder is a copy, or was moved without its recipe {}; name the recipe and "
+      "-o {} to compare them",
+      recipe->string(), arguments.target);
 }
 
 /// Compares a folder with what made it, as far as that is there: for its files, the folder is
@@ -93,12 +94,13 @@ int run_verify(const Arguments& arguments) {
     for (const Finding& finding : result.findings)
       findings.push_back(
           {{"kind", to_string(finding.kind)}, {"path", finding.path}, {"what", finding.what}});
-    print_json({{"images", result.images},
-                {"files", result.files},
-                {"rerendered", result.rerendered},
-                {"differences", result.findings.size()},
-                {"not_checked", not_checked.empty() ? nlohmann::json() : nlohmann::json(not_checked)},
-                {"findings", findings}});
+    print_json(
+        {{"images", result.images},
+         {"files", result.files},
+         {"rerendered", result.rerendered},
+         {"differences", result.findings.size()},
+         {"not_checked", not_checked.empty() ? nlohmann::json() : nlohmann::json(not_checked)},
+         {"findings", findings}});
   } else {
     print_findings(result);
     if (!not_checked.empty()) print_not_checked(not_checked);

@@ -117,7 +117,8 @@ bool reflink(const fs::path& from, const fs::path& to) {
 }  // namespace
 
 std::string read_text_file(const fs::path& path) {
-  std::error_code unknown;  // what keeps us from looking keeps us from opening too, and is told then
+  std::error_code
+      unknown;  // what keeps us from looking keeps us from opening too, and is told then
   if (fs::is_directory(path, unknown))
     fail(ErrorKind::io, "{}: wanted a file, found a folder", path.string());
   std::ifstream in(path, std::ios::binary);
