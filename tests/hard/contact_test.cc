@@ -273,6 +273,33 @@ TEST(Contact, ALampOnAWallShinesAsOneJustOffIt) {
   }
 }
 
+TEST(Contact, WhatLiesOnALampHidesItsLight) {
+  // A black plate on a shining floor, and a grey plane over both.
+  for (const Pose& pose : {k_level, k_tilted}) {
+    const auto picture = [&](double gap) {
+      Picture p = hard::deep_picture(12, 64);
+      const int lamp = pictures::add_matte(p.scene, {0, 0, 0});
+      p.scene.materials[static_cast<std::size_t>(lamp)].emits = true;
+      p.scene.materials[static_cast<std::size_t>(lamp)].emission.constant = {5, 5, 5};
+      pictures::add_object(p.scene, square(0.02, 0.01, k_ground - gap, 0.2, 2, pose), lamp);
+      pictures::add_object(p.scene, square(0, 0, k_ground, 0.08, 3, pose),
+                           pictures::add_matte(p.scene, {0, 0, 0}), k_model_object_id);
+      pictures::add_object(p.scene, pictures::inside_out(square(0, 0, k_ground + 0.1, 1, 1, pose)),
+                           pictures::add_matte(p.scene, {0.5f, 0.5f, 0.5f}));
+      p.camera.fov_deg = 60;
+      look(p, pose, {0.03, 0.01, k_ground + 0.02}, {0.031, 0.012, k_ground + 0.1});
+      p.engine.depth_total = 1;
+      return p;
+    };
+    const pictures::Estimate on = pictures::estimate(picture(0), 8);
+    const pictures::Estimate off = pictures::estimate(picture(1e-4), 8, 99);
+    EXPECT_GT(on.mean, 0.1);
+    // A thousandth of the distance is worth less than half a percent.
+    EXPECT_NEAR(on.mean, off.mean, 4 * std::hypot(on.error, off.error) + 0.005 * off.mean)
+        << pose.name;
+  }
+}
+
 TEST(Contact, NoTreeChangesABit) {
   for (Picture p : {plate_on_floor(k_tilted, 10, 9, 7), plate_on_floor(k_level, 1, 1, 1),
                     glass_on_floor(k_tilted, {0.08f, 0.08f, 0.02f}, 0)}) {

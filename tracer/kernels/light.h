@@ -22,11 +22,12 @@ typedef struct {
 } LightTables;
 
 typedef struct {
-  real3 wi;      ///< unit, to the light
-  real3 target;  ///< where the shadow ray ends, for bounded lights
-  mask bounded;  ///< false: the light is beyond the scene
-  mask dirac;    ///< a point of the sphere of directions: `radiance` is irradiance at normal
-                 ///< incidence, pdf is 1
+  real3 wi;         ///< unit, to the light
+  real3 target;     ///< where the shadow ray ends, for bounded lights
+  mask bounded;     ///< false: the light is beyond the scene
+  natural covered;  ///< triangle of the target where others may lie on it (ties.cl), or k_none
+  mask dirac;       ///< a point of the sphere of directions: `radiance` is irradiance at normal
+                    ///< incidence, pdf is 1
   real3 radiance;
   real pdf;  ///< 0: nothing comes this way
 } LightSample;
@@ -36,6 +37,7 @@ DS_FN LightSample no_light(void) {
   s.wi = vec((real)(0.0f), (real)(0.0f), (real)(1.0f));
   s.target = splat((real)(0.0f));
   s.bounded = (mask)(0);
+  s.covered = (natural)(k_none);
   s.dirac = (mask)(0);
   s.radiance = splat((real)(0.0f));
   s.pdf = (real)(0.0f);
@@ -47,6 +49,7 @@ DS_FN LightSample choose(mask m, LightSample a, LightSample b) {
   s.wi = choose(m, a.wi, b.wi);
   s.target = choose(m, a.target, b.target);
   s.bounded = choose_mask(m, a.bounded, b.bounded);
+  s.covered = choose_natural(m, a.covered, b.covered);
   s.dirac = choose_mask(m, a.dirac, b.dirac);
   s.radiance = choose(m, a.radiance, b.radiance);
   s.pdf = choose(m, a.pdf, b.pdf);

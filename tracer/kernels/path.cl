@@ -126,6 +126,7 @@ DS_FN real3 emitted(const SceneTables* t, const LaneHits* hits, const Surface* s
 typedef struct {
   real3 wi, target;  ///< as in LightSample
   mask bounded;
+  natural covered;
   real3 direct;  ///< what it adds to the sample's radiance where nothing stands between
   real weight;   ///< 0: nothing comes this way
 } Candidate;
@@ -135,6 +136,7 @@ DS_FN Candidate choose(mask m, Candidate a, Candidate b) {
   c.wi = choose(m, a.wi, b.wi);
   c.target = choose(m, a.target, b.target);
   c.bounded = choose_mask(m, a.bounded, b.bounded);
+  c.covered = choose_natural(m, a.covered, b.covered);
   c.direct = choose(m, a.direct, b.direct);
   c.weight = choose(m, a.weight, b.weight);
   return c;
@@ -153,6 +155,7 @@ DS_FN Candidate light_candidate(const LightSample* light, const Paths* paths, ma
   c.wi = light->wi;
   c.target = light->target;
   c.bounded = light->bounded;
+  c.covered = light->covered;
   c.direct = mul(mul(paths->throughput, bsdf.value), arriving);
   const mask reaches = active & (light->pdf > 0.0f) & (max_component(c.direct) > 0.0f) &
                        (dot(light->wi, s->normal) > 0.0f);
@@ -201,6 +204,13 @@ DS_FN void ask_for_light(Paths* paths, mask active, const Surface* s, const Mate
   // Short of the light by 1e-4 of the way, so that an emitting surface does not shadow itself.
   shadow->direction = choose(chosen.bounded, scale(way, 1.0f / distance), chosen.wi);
   shadow->t_max = choose(chosen.bounded, distance * 0.9999f, (real)(1e30f));
+#  ifdef DS_MESH_LIGHTS
+  // Nor does the shadow ray reach what lies on the light.
+  const mask covered = shadow->wanted & (chosen.covered != k_none);
+  if (any_lane(covered))
+    shadow->wanted = shadow->wanted & (next_layers(t->nodes, t->leaves, t->triangles, chosen.target,
+                                                   chosen.covered, covered, covered) == k_none);
+#  endif
 }
 #endif
 

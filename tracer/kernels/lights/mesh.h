@@ -34,8 +34,8 @@ DS_FN LightSample mesh_sample(LightTables t, uint at, real3 from, real2 u) {
                (real)(0.99999994f));
   v.y = u.y;
   const real2 b = uniform_triangle(v);
-  const natural row =
-      load_natural(t.tables + as_uint(p[mesh_triangles]), i) * (uint)k_triangle_words;
+  const natural triangle = load_natural(t.tables + as_uint(p[mesh_triangles]), i);
+  const natural row = triangle * (uint)k_triangle_words;
   const real3 p0 = load3(t.triangles, row);
   const real3 e1 = sub(load3(t.triangles, row + 3u), p0);
   const real3 e2 = sub(load3(t.triangles, row + 6u), p0);
@@ -50,6 +50,7 @@ DS_FN LightSample mesh_sample(LightTables t, uint at, real3 from, real2 u) {
   const natural flags = load_natural(t.triangles, row + (uint)k_triangle_flags);
   const real error = real_of(((flags >> (uint)k_tie_error_shift) & 0xffu) << 23u);
   s.target = add_scaled(point, normal, 4.0f * error);
+  s.covered = choose_natural((flags & (uint)k_flag_covered) != 0u, triangle, (natural)(k_none));
   s.bounded = squared > 0.0f;
   s.radiance = uniform3(p + mesh_radiance);
   s.pdf = choose(cosine > 1e-6f, squared / (greater(cosine, (real)(1e-6f)) * p[mesh_area]),
