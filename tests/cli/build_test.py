@@ -243,6 +243,18 @@ class BuildTest(TinyCase):
         models = {model["model"]: model for model in self.run_it("models", self.recipe, "--json").json["models"]}
         self.assertEqual((models["torn.off"]["non_finite"], models["torn.off"]["out_of_range"]), (1, 1))
 
+    def test_models_turned_outwards_are_told_in_one_line(self):
+        for name in ("one", "two"):
+            (self.tiny / f"models/{name}.off").write_text(
+                "OFF 4 4 0\n0 0 0\n4 0 0\n0 4 0\n0 0 4\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 3 2\n")
+        run = self.run_it("build", self.recipe, "-o", self.out)
+        self.assertEqual(run.code, 0, run)
+        self.assertEqual([line for line in run.err.splitlines() if "warning" in line],
+                         ["dsbuild: warning: 2 models with closed surfaces that face inwards: mended, 6 triangles "
+                          "turned outwards (dsbuild models lists them as flipped)"])
+        self.assertEqual(json.loads((self.out / "manifest/dataset.json").read_text())["mended_models"],
+                         {"one.off": {"flipped": 3}, "two.off": {"flipped": 3}})
+
     def test_a_failing_image_is_told_once(self):
         run = self.run_it("build", self.recipe, "-o", self.out, "--device", "no such device")
         self.assertEqual(run.code, 1, run)

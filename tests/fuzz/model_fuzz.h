@@ -12,14 +12,15 @@
 
 namespace ds {
 
-inline void check_mesh(const Mesh& mesh) {
+template <typename Position>
+void check_mesh(const BasicMesh<Position>& mesh) {
   DS_ASSERT(!mesh.triangles.empty());
   DS_ASSERT(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
   DS_ASSERT(mesh.uvs.empty() || mesh.uvs.size() == mesh.positions.size());
   for (const auto& t : mesh.triangles)
     for (const std::uint32_t v : t)
       DS_ASSERT(v < mesh.positions.size());
-  for (const Vec3 p : mesh.positions)
+  for (const Position p : mesh.positions)
     DS_ASSERT(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
   for (const Vec3 n : mesh.normals)
     DS_ASSERT(std::isfinite(n.x) && std::isfinite(n.y) && std::isfinite(n.z));

@@ -17,12 +17,25 @@ namespace ds {
 /// An indexed triangle mesh. `normals` and `uvs` are empty or as long as `positions`. Positions are
 /// finite; every index is below positions.size(). Counter-clockwise seen from outside, where the
 /// source says so.
-struct Mesh {
-  std::vector<Vec3> positions;
+template <typename Position>
+struct BasicMesh {
+  std::vector<Position> positions;
   std::vector<Vec3> normals;  ///< unit length, or zero where none can be told
   std::vector<Vec2> uvs;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
+
+/// In the world, as it is traced.
+using Mesh = BasicMesh<Vec3>;
+
+/// In a file's coordinates, which may lie so far from their origin (a survey's do) that floats
+/// could not tell its vertices apart: doubles until what they have in common is taken off. Those of
+/// a mesh that floats hold well are floats' values, so that a file is the same mesh however many
+/// digits it is saved with.
+using FileMesh = BasicMesh<Vec3d>;
+
+/// Each position rounded on its own.
+Mesh in_floats(FileMesh mesh);
 
 /// A coordinate beyond this (in the file's unit) counts as not finite: it is what a damaged file
 /// holds, and its square still fits a float.
@@ -47,8 +60,10 @@ struct MeshReport {
                                       ///< earlier one, whatever the order
   std::uint64_t unreferenced =
       0;                      ///< vertices no kept triangle uses, removed (non-finite included)
-  std::uint64_t flipped = 0;  ///< kept triangles wound against the majority of the surface they
-                              ///< belong to; reported, not changed
+  std::uint64_t flipped = 0;  ///< kept triangles of closed surfaces turned to face outwards (see
+                              ///< Winding)
+  std::uint64_t against = 0;  ///< kept triangles of open surfaces wound against the majority of
+                              ///< theirs; reported, not changed
   std::uint64_t triangles_kept = 0;
   bool has_normals = false;
   bool has_uvs = false;
@@ -62,6 +77,7 @@ struct MeshReportColumn {
   std::uint64_t MeshReport::*count;
   const char* damage = nullptr;
 };
+inline constexpr const char* k_turned_outwards = "flipped";
 inline constexpr std::array k_mesh_report_columns{
     MeshReportColumn{"vertices", &MeshReport::vertices},
     MeshReportColumn{"faces", &MeshReport::faces},
@@ -78,7 +94,9 @@ inline constexpr std::array k_mesh_report_columns{
     MeshReportColumn{"zero_area", &MeshReport::zero_area},
     MeshReportColumn{"duplicate_faces", &MeshReport::duplicate_faces},
     MeshReportColumn{"unreferenced", &MeshReport::unreferenced},
-    MeshReportColumn{"flipped", &MeshReport::flipped},
+    MeshReportColumn{k_turned_outwards, &MeshReport::flipped,
+                     "triangles of closed surfaces turned to face outwards"},
+    MeshReportColumn{"against", &MeshReport::against},
     MeshReportColumn{"triangles_kept", &MeshReport::triangles_kept},
 };
 
@@ -91,19 +109,27 @@ std::string to_text(const MendedDamage& damage);
 
 /// A mesh as its file describes it, before normalisation.
 struct Model {
-  Mesh mesh;
+  FileMesh mesh;
   MeshReport report;
 };
+
+/// Whether triangles of closed surfaces are turned to face outwards (mesh_outward.h), or run as the
+/// file has them.
+enum class Winding { outwards, as_stored };
 
 /// Reads PLY or OFF by the file's first bytes (not its name), triangulates, and mends what is
 /// listed in MeshReport. The order of vertices and triangles is the file's. No -0 in the result.
 /// Throws Error(asset) with path and line (text) or byte offset (binary) for a file that is cut
 /// off, contradicts itself, or leaves no triangle; Error(io) for one that cannot be read. Never
 /// reserves memory on the word of a header alone.
-Model read_model(const std::filesystem::path& file);
+Model read_model(const std::filesystem::path& file, Winding winding = Winding::outwards);
 
 /// The same for a file already in memory; `name` stands for the path in messages.
-Model parse_model(std::string_view bytes, const std::string& name);
+Model parse_model(std::string_view bytes, const std::string& name,
+                  Winding winding = Winding::outwards);
+
+/// Turns what faces inwards of a mesh as read_model leaves it; how many triangles.
+std::uint64_t turn_outwards(FileMesh& mesh);
 
 enum class UpAxis { y, z };
 enum class Centring { none, mass, box };  ///< mass: area-weighted centroid of the surface
@@ -123,16 +149,21 @@ struct NormaliseOptions {
 /// Turns, scales, places and shades a mesh of at least one triangle. Arithmetic in double with
 /// + - * / and sqrt only, results rounded once to float: the same bits on every machine. No -0.
 ///
+/// Throws Error(asset) for a mesh that is placed so far from the world's origin that floats there
+/// lie more than a thousandth of its size apart: for one left at a survey's coordinates, say.
+///
 /// Normals: `smooth` weights by area times corner angle, joins vertices of equal position, and
 /// splits a vertex where faces meet at more than crease_deg or where neighbours are wound against
 /// each other; `flat` gives each triangle its own; `keep` turns the stored ones and throws
 /// Error(asset) where the mesh has none. uvs are kept by all three. Triangles keep their order and
 /// corners.
-Mesh normalise(const Mesh& mesh, const NormaliseOptions& options);
+Mesh normalise(const FileMesh& mesh, const NormaliseOptions& options);
 
 /// Hash of positions, normals, uvs and triangles, bit by bit and in order: what a re-saved file
 /// keeps. Files of one geometry in different formats, headers, comments or spellings of equal
 /// numbers have the same hash once read.
 Hash128 geometry_hash(const Mesh& mesh);
+/// The same hash where all positions are floats' values.
+Hash128 geometry_hash(const FileMesh& mesh);
 
 }  // namespace ds

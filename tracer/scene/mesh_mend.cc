@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/error.h"
+#include "tracer/scene/mesh_outward.h"
 #include "tracer/scene/mesh_polygons.h"
 #include "tracer/scene/mesh_topology.h"
 #include "tracer/scene/mesh_triangulate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -22,8 +24,8 @@ bool is_finite(Vec3 v) {
 bool is_finite(Vec2 v) {
   return std::isfinite(v.x) && std::isfinite(v.y);
 }
-bool is_usable(Vec3 p) {
-  const auto near = [](float x) { return std::fabs(double{x}) <= k_farthest_coordinate; };
+bool is_usable(Vec3d p) {
+  const auto near = [](double x) { return std::fabs(x) <= k_farthest_coordinate; };
   return near(p.x) && near(p.y) && near(p.z);  // false for NaN
 }
 
@@ -40,13 +42,42 @@ void count_faces(const Polygons& polygons, MeshReport& report) {
   }
 }
 
-/// The triangles of all faces whose corners exist and are usable.
-std::vector<Triangle> triangulate_usable(const Polygons& polygons, MeshReport& report) {
-  std::vector<char> usable(polygons.positions.size());
+std::vector<char> find_usable(const std::vector<Vec3d>& positions, MeshReport& report) {
+  std::vector<char> usable(positions.size());
   for (std::size_t v = 0; v < usable.size(); ++v) {
-    usable[v] = is_usable(polygons.positions[v]) ? 1 : 0;
+    usable[v] = is_usable(positions[v]) ? 1 : 0;
     if (!usable[v]) ++report.non_finite;
   }
+  return usable;
+}
+
+/// Whether floats hold the faces' coordinates to about a ten-millionth of the mesh's longest side,
+/// as they do at its origin: half a unit in the last place of four times that side.
+bool floats_hold(const Polygons& polygons, const std::vector<char>& usable) {
+  constexpr double k_farthest_in_sides = 4;
+  constexpr double k_least_side = 0x1p-100;  // its square is still a number to floats
+  constexpr double k_infinity = std::numeric_limits<double>::infinity();
+  std::array<double, 3> least{k_infinity, k_infinity, k_infinity};
+  std::array<double, 3> most{-k_infinity, -k_infinity, -k_infinity};
+  for (const std::uint32_t v : polygons.corners) {
+    if (v >= usable.size() || usable[v] == 0) continue;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double x = polygons.positions[v][static_cast<int>(axis)];
+      least[axis] = std::min(least[axis], x);
+      most[axis] = std::max(most[axis], x);
+    }
+  }
+  double side = 0, farthest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    side = std::max(side, most[axis] - least[axis]);
+    farthest = std::max({farthest, std::fabs(least[axis]), std::fabs(most[axis])});
+  }
+  return side >= k_least_side && farthest <= k_farthest_in_sides * side;
+}
+
+/// The triangles of all faces whose corners exist and are usable.
+std::vector<Triangle> triangulate_usable(const Polygons& polygons, const std::vector<char>& usable,
+                                         MeshReport& report) {
   std::vector<Triangle> triangles;
   triangles.reserve(report.triangles);
   Triangulator triangulator;
@@ -61,7 +92,7 @@ std::vector<Triangle> triangulate_usable(const Polygons& polygons, MeshReport& r
   return triangles;
 }
 
-/// No area within the rounding of double arithmetic on the file's floats: corners that coincide or
+/// No area within the rounding of double arithmetic on the file's coordinates: corners that coincide or
 /// lie exactly on one line. A sliver that floats can tell from a line is kept; without it a mesh
 /// would have a crack.
 bool has_no_area(Vec3d a, Vec3d b, Vec3d c) {
@@ -71,12 +102,17 @@ bool has_no_area(Vec3d a, Vec3d b, Vec3d c) {
   return !(length(cross(ab, ac)) > k_relative * longest);
 }
 
-void remove_zero_area(std::vector<Triangle>& triangles, const std::vector<Vec3>& positions,
-                      MeshReport& report) {
+/// Returns those removed whose corners are three places: on one line, where they may join others.
+std::vector<Triangle> remove_zero_area(std::vector<Triangle>& triangles,
+                                       const std::vector<Vec3d>& positions, MeshReport& report) {
+  std::vector<Triangle> flat;
   report.zero_area = std::erase_if(triangles, [&](const Triangle& t) {
-    return has_no_area(to_double(positions[t[0]]), to_double(positions[t[1]]),
-                       to_double(positions[t[2]]));
+    const Vec3d a = positions[t[0]], b = positions[t[1]], c = positions[t[2]];
+    if (!has_no_area(a, b, c)) return false;
+    if (a != b && b != c && c != a) flat.push_back(t);
+    return true;
   });
+  return flat;
 }
 
 void remove_duplicates(std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& welded,
@@ -97,13 +133,13 @@ void remove_duplicates(std::vector<Triangle>& triangles, const std::vector<std::
 }
 
 /// Normals to unit length, and zero for what is not finite.
-void mend_attributes(Mesh& mesh, MeshReport& report) {
+void mend_attributes(FileMesh& mesh, MeshReport& report) {
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     bool bad = false;
     if (!mesh.normals.empty()) {
       bad = !is_finite(mesh.normals[v]);
       const Vec3d unit = bad ? Vec3d{} : normalized(to_double(mesh.normals[v]));
-      mesh.normals[v] = {to_mesh_float(unit.x), to_mesh_float(unit.y), to_mesh_float(unit.z)};
+      mesh.normals[v] = to_mesh_floats(unit);
     }
     if (!mesh.uvs.empty() && !is_finite(mesh.uvs[v])) {
       bad = true;
@@ -114,7 +150,7 @@ void mend_attributes(Mesh& mesh, MeshReport& report) {
 }
 
 /// Moves what triangles use to the front, in the file's order.
-void drop_unreferenced(Mesh& mesh, MeshReport& report) {
+void drop_unreferenced(FileMesh& mesh, MeshReport& report) {
   std::vector<char> used(mesh.positions.size(), 0);
   for (const Triangle& t : mesh.triangles)
     for (const std::uint32_t v : t)
@@ -160,7 +196,7 @@ std::string to_text(const MendedDamage& damage) {
   return text;
 }
 
-Model mend(Polygons polygons, const std::string& name) {
+Model mend(Polygons polygons, const std::string& name, Winding winding) {
   Model model;
   MeshReport& report = model.report;
   count_faces(polygons, report);
@@ -168,12 +204,16 @@ Model mend(Polygons polygons, const std::string& name) {
     fail(ErrorKind::asset, "{}: at most {} vertices and {} triangles can be used, got {} and {}",
          name, k_most_vertices, k_most_triangles, report.vertices, report.triangles);
 
-  Mesh& mesh = model.mesh;
-  mesh.triangles = triangulate_usable(polygons, report);
+  const std::vector<char> usable = find_usable(polygons.positions, report);
+  if (floats_hold(polygons, usable))
+    for (Vec3d& p : polygons.positions)
+      p = to_double(to_mesh_floats(p));
+  FileMesh& mesh = model.mesh;
+  mesh.triangles = triangulate_usable(polygons, usable, report);
   mesh.positions = std::move(polygons.positions);
   mesh.normals = std::move(polygons.normals);
   mesh.uvs = std::move(polygons.uvs);
-  remove_zero_area(mesh.triangles, mesh.positions, report);
+  const std::vector<Triangle> flat = remove_zero_area(mesh.triangles, mesh.positions, report);
   const std::vector<std::uint32_t> welded = weld(mesh.positions);
   remove_duplicates(mesh.triangles, welded, report);
   if (mesh.triangles.empty())
@@ -183,13 +223,32 @@ Model mend(Polygons polygons, const std::string& name) {
         "not finite, {} triangles without area",
         name, report.faces, report.short_faces, report.out_of_range, report.non_finite,
         report.zero_area);
-  report.flipped = count_flipped(mesh.triangles, welded);
+  if (winding == Winding::outwards) {
+    const WindingReport turned = turn_outwards(mesh.positions, welded, mesh.triangles, flat);
+    report.flipped = turned.turned;
+    report.against = turned.against;
+  }
   drop_unreferenced(mesh, report);
   mend_attributes(mesh, report);
   report.triangles_kept = mesh.triangles.size();
   report.has_normals = !mesh.normals.empty();
   report.has_uvs = !mesh.uvs.empty();
   return model;
+}
+
+std::uint64_t turn_outwards(FileMesh& mesh) {
+  return turn_outwards(mesh.positions, weld(mesh.positions), mesh.triangles).turned;
+}
+
+Mesh in_floats(FileMesh mesh) {
+  Mesh rounded;
+  rounded.positions.reserve(mesh.positions.size());
+  for (const Vec3d p : mesh.positions)
+    rounded.positions.push_back(to_mesh_floats(p));
+  rounded.normals = std::move(mesh.normals);
+  rounded.uvs = std::move(mesh.uvs);
+  rounded.triangles = std::move(mesh.triangles);
+  return rounded;
 }
 
 float to_mesh_float(double value) {

@@ -27,11 +27,11 @@ Vec3 rounded(Vec3d v) {
   return to_float(v + Vec3d{0, 0, 0});
 }
 
-std::vector<Vec3d> turned_positions(const Mesh& mesh, UpAxis up) {
+std::vector<Vec3d> turned_positions(const FileMesh& mesh, UpAxis up) {
   std::vector<Vec3d> positions;
   positions.reserve(mesh.positions.size());
-  for (const Vec3 p : mesh.positions)
-    positions.push_back(turned(to_double(p), up));
+  for (const Vec3d p : mesh.positions)
+    positions.push_back(turned(p, up));
   return positions;
 }
 
@@ -88,9 +88,29 @@ std::vector<Vec3> placed_positions(const std::vector<Vec3d>& positions,
   return placed;
 }
 
+/// What single floats leave of a body this far away is not the body.
+void check_digits(const std::vector<Vec3>& placed) {
+  constexpr double k_least_digits = 1e-3;  // of its size: half a pixel of one that fills a picture
+  Vec3d least = to_double(placed[0]), most = least;
+  for (const Vec3 p : placed) {
+    least = {std::min(least.x, double{p.x}), std::min(least.y, double{p.y}),
+             std::min(least.z, double{p.z})};
+    most = {std::max(most.x, double{p.x}), std::max(most.y, double{p.y}),
+            std::max(most.z, double{p.z})};
+  }
+  const Vec3d side = most - least;
+  const double size = std::max({side.x, side.y, side.z});
+  const double farthest = std::max({-least.x, -least.y, -least.z, most.x, most.y, most.z});
+  if (farthest * 0x1p-24 <= size * k_least_digits) return;
+  fail(ErrorKind::asset,
+       "the model, {:.5g} m in size, is placed {:.5g} m from the world's origin, where single "
+       "floats cannot tell its shape: models.centre, models.ground_z_m and models.size_m place it",
+       size, farthest);
+}
+
 /// The mesh with one normal a corner. Corners that agree in place, normal and uv share a vertex;
 /// vertices are in the order in which triangles first use them.
-Mesh with_corner_normals(const Mesh& source, const std::vector<Vec3>& placed,
+Mesh with_corner_normals(const FileMesh& source, const std::vector<Vec3>& placed,
                          const std::vector<std::uint32_t>& welded,
                          const std::vector<Vec3d>& corner_normals) {
   const bool has_uvs = !source.uvs.empty();
@@ -122,7 +142,7 @@ Mesh with_corner_normals(const Mesh& source, const std::vector<Vec3>& placed,
   return mesh;
 }
 
-Mesh with_stored_normals(const Mesh& source, std::vector<Vec3> placed, UpAxis up) {
+Mesh with_stored_normals(const FileMesh& source, std::vector<Vec3> placed, UpAxis up) {
   if (source.normals.empty())
     fail(ErrorKind::asset, "normals = \"keep\" wants a model with stored normals, found none");
   Mesh mesh;
@@ -146,13 +166,14 @@ std::vector<Vec3d> flat_corner_normals(const std::vector<Vec3d>& positions,
 
 }  // namespace
 
-Mesh normalise(const Mesh& mesh, const NormaliseOptions& options) {
+Mesh normalise(const FileMesh& mesh, const NormaliseOptions& options) {
   DS_ASSERT(!mesh.triangles.empty());
   DS_ASSERT(std::isfinite(options.size_m) && options.size_m >= 0);
   DS_ASSERT(std::isfinite(options.ground_z_m));
   DS_ASSERT(options.crease_deg >= 0 && options.crease_deg <= 180);
   const std::vector<Vec3d> positions = turned_positions(mesh, options.up);
   std::vector<Vec3> placed = placed_positions(positions, mesh.triangles, options);
+  check_digits(placed);
   if (options.normals == Normals::keep)
     return with_stored_normals(mesh, std::move(placed), options.up);
   // Normals come from the file's coordinates, which rounding has not touched yet.

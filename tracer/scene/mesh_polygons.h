@@ -17,7 +17,7 @@ namespace ds {
 /// not in [0, 2^32 - 1) are 2^32 - 1; any may be at or above the vertex count. `normals` and `uvs`
 /// are empty or as long as `positions`. No -0.
 struct Polygons {
-  std::vector<Vec3> positions;
+  std::vector<Vec3d> positions;
   std::vector<Vec3> normals;
   std::vector<Vec2> uvs;
   std::vector<std::uint32_t> corners;  ///< vertex indices of all faces, one face after another
@@ -37,11 +37,14 @@ Polygons read_off(std::string_view bytes, const std::string& name);
 bool is_ply(std::string_view bytes);
 bool is_off(std::string_view bytes);
 
-/// Triangulates, and removes what MeshReport lists. Throws Error(asset) where no triangle is left.
-Model mend(Polygons polygons, const std::string& name);
+/// Triangulates, and mends what MeshReport lists. Throws Error(asset) where no triangle is left.
+Model mend(Polygons polygons, const std::string& name, Winding winding);
 
 /// A double from a file as the float a mesh holds: too large becomes infinite, -0 becomes 0.
 float to_mesh_float(double value);
+inline Vec3 to_mesh_floats(Vec3d v) {
+  return {to_mesh_float(v.x), to_mesh_float(v.y), to_mesh_float(v.z)};
+}
 
 /// How many items of at least `item_bytes` to reserve room for when a header promises `promised`
 /// and `bytes_left` bytes follow.

@@ -7,17 +7,17 @@
 
 namespace ds {
 
-Model parse_model(std::string_view bytes, const std::string& name) {
-  if (is_ply(bytes)) return mend(read_ply(bytes, name), name);
-  if (is_off(bytes)) return mend(read_off(bytes, name), name);
+Model parse_model(std::string_view bytes, const std::string& name, Winding winding) {
+  if (is_ply(bytes)) return mend(read_ply(bytes, name), name, winding);
+  if (is_off(bytes)) return mend(read_off(bytes, name), name, winding);
   if (bytes.empty())
     fail(ErrorKind::asset, "{}: wanted a PLY or OFF file, found an empty one", name);
   fail(ErrorKind::asset, "{}: wanted a PLY or OFF file, found one that begins \"{}\"", name,
        printable(bytes.substr(0, 16)));
 }
 
-Model read_model(const std::filesystem::path& file) {
-  return parse_model(read_text_file(file), file.string());
+Model read_model(const std::filesystem::path& file, Winding winding) {
+  return parse_model(read_text_file(file), file.string(), winding);
 }
 
 }  // namespace ds

@@ -44,13 +44,12 @@ std::vector<std::uint32_t> first_equal(std::span<const std::array<std::uint32_t,
 template std::vector<std::uint32_t> first_equal(std::span<const std::array<std::uint32_t, 3>>);
 template std::vector<std::uint32_t> first_equal(std::span<const std::array<std::uint32_t, 6>>);
 
-std::vector<std::uint32_t> weld(std::span<const Vec3> positions) {
-  std::vector<std::array<std::uint32_t, 3>> keys;
+std::vector<std::uint32_t> weld(std::span<const Vec3d> positions) {
+  std::vector<std::array<std::uint32_t, 6>> keys;
   keys.reserve(positions.size());
-  const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x + 0.0F); };  // -0 -> 0
-  for (const Vec3 p : positions)
-    keys.push_back({bits(p.x), bits(p.y), bits(p.z)});
-  return first_equal<3>(keys);
+  for (const Vec3d p : positions)
+    keys.push_back(std::bit_cast<std::array<std::uint32_t, 6>>(p + Vec3d{0, 0, 0}));  // -0 -> 0
+  return first_equal<6>(keys);
 }
 
 EdgeGroups group_edges(std::span<const Triangle> triangles, std::span<const std::uint32_t> at) {
@@ -94,26 +93,6 @@ EdgeGroups group_edges(std::span<const Triangle> triangles, std::span<const std:
     if (!run.empty()) groups.ends.push_back(static_cast<std::uint32_t>(groups.half_edges.size()));
   }
   return groups;
-}
-
-std::uint64_t count_flipped(std::span<const Triangle> triangles,
-                            std::span<const std::uint32_t> at) {
-  DisjointSets sets(triangles.size());
-  group_edges(triangles, at).for_each([&](std::span<const std::uint32_t> edge) {
-    if (edge.size() != 2) return;
-    // Neighbours wound alike run along their edge in opposite directions.
-    const bool turned = start_of(triangles, at, edge[0]) == start_of(triangles, at, edge[1]);
-    sets.join(edge[0] / 3, edge[1] / 3, turned);
-  });
-  std::vector<std::array<std::uint64_t, 2>> sides(triangles.size());
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    const DisjointSets::Found found = sets.find(t);
-    ++sides[found.root][found.side];
-  }
-  std::uint64_t flipped = 0;
-  for (const auto& [one, other] : sides)
-    flipped += std::min(one, other);
-  return flipped;
 }
 
 DisjointSets::DisjointSets(std::size_t size) : parent_(size), side_(size, 0) {

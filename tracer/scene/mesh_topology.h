@@ -21,7 +21,7 @@ std::vector<std::uint32_t> first_equal(std::span<const std::array<std::uint32_t,
 
 /// For each position the index of the first one at the same place (-0 equals 0, and a NaN its own
 /// bits).
-std::vector<std::uint32_t> weld(std::span<const Vec3> positions);
+std::vector<std::uint32_t> weld(std::span<const Vec3d> positions);
 
 /// Half-edge 3 t + k runs from corner k to corner (k + 1) % 3 of triangle t. Groups them by the
 /// edge they lie on, whichever way they run; `at` maps a vertex index to the vertex it counts as.
@@ -49,11 +49,6 @@ inline std::uint32_t start_of(std::span<const Triangle> triangles,
                               std::span<const std::uint32_t> at, std::uint32_t h) {
   return at[triangles[h / 3][h % 3]];
 }
-
-/// How many triangles are wound against the majority of their component: triangles joined by edges
-/// that exactly two of them share. A component that cannot be oriented counts as its edges in order
-/// of their first triangles say.
-std::uint64_t count_flipped(std::span<const Triangle> triangles, std::span<const std::uint32_t> at);
 
 /// Disjoint sets of 0 ... size - 1, each element with a side (0 or 1) relative to its set.
 class DisjointSets {

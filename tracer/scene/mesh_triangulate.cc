@@ -12,18 +12,17 @@ namespace {
 
 /// Twice the area vector of a polygon (Newell), about its first corner so that a far polygon keeps
 /// its digits.
-Vec3d area_vector(std::span<const Vec3> positions, std::span<const std::uint32_t> polygon) {
-  const Vec3d origin = to_double(positions[polygon[0]]);
+Vec3d area_vector(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon) {
+  const Vec3d origin = positions[polygon[0]];
   Vec3d sum;
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-    sum = sum + cross(to_double(positions[polygon[i]]) - origin,
-                      to_double(positions[polygon[i + 1]]) - origin);
+    sum = sum + cross(positions[polygon[i]] - origin, positions[polygon[i + 1]] - origin);
   return sum;
 }
 
 }  // namespace
 
-void Triangulator::triangulate(std::span<const Vec3> positions,
+void Triangulator::triangulate(std::span<const Vec3d> positions,
                                std::span<const std::uint32_t> polygon,
                                std::vector<std::array<std::uint32_t, 3>>& out) {
   DS_ASSERT(polygon.size() >= 3);
@@ -45,7 +44,7 @@ void Triangulator::triangulate(std::span<const Vec3> positions,
 }
 
 /// Fills points_, counter-clockwise as a whole. False where the area vector is zero.
-bool Triangulator::project(std::span<const Vec3> positions,
+bool Triangulator::project(std::span<const Vec3d> positions,
                            std::span<const std::uint32_t> polygon) {
   const Vec3d area = area_vector(positions, polygon);
   const double x = std::fabs(area.x), y = std::fabs(area.y), z = std::fabs(area.z);
@@ -56,7 +55,7 @@ bool Triangulator::project(std::span<const Vec3> positions,
   if (area[axis] < 0) std::swap(u, v);
   points_.clear();
   for (const std::uint32_t index : polygon)
-    points_.push_back({double{positions[index][u]}, double{positions[index][v]}});
+    points_.push_back({positions[index][u], positions[index][v]});
   return true;
 }
 

@@ -23,7 +23,7 @@ class Triangulator {
  public:
   /// Appends the triangles of `polygon` (indices into `positions`, at least 3, all finite) to
   /// `out`.
-  void triangulate(std::span<const Vec3> positions, std::span<const std::uint32_t> polygon,
+  void triangulate(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon,
                    std::vector<std::array<std::uint32_t, 3>>& out);
 
  private:
@@ -33,7 +33,7 @@ class Triangulator {
     bool operator==(const Point&) const = default;
   };
 
-  bool project(std::span<const Vec3> positions, std::span<const std::uint32_t> polygon);
+  bool project(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon);
   bool is_strictly_convex() const;
   void build_grid();
   std::size_t cell_of(double value, double least, double cells_per_unit) const;

@@ -105,19 +105,20 @@ class OffReader {
     if (keyword_.normals) out_.normals.reserve(expected);
     if (keyword_.uvs) out_.uvs.reserve(expected);
 
-    std::array<float, 3 + 3 + 4 + 2> row{};
+    std::array<double, 3 + 3 + 4 + 2> row{};
     for (std::uint64_t i = 0; i < vertices_; ++i) {
       if (!cursor_.next_line())
         cursor_.fail_here("cut off: the header promises {} vertices, found {}", vertices_, i);
       std::size_t found = 0;
       for (; !cursor_.line_done() && found < most; ++found)
-        row[found] = to_mesh_float(cursor_.number());
+        row[found] = cursor_.number() + 0.0;  // -0 becomes 0
       if (found < least || !cursor_.line_done())
         cursor_.fail_here("vertex {} must have {} values, found {}", i, least,
                           cursor_.line_done() ? "fewer" : "more");
       out_.positions.push_back({row[0], row[1], row[2]});
-      if (keyword_.normals) out_.normals.push_back({row[3], row[4], row[5]});
-      if (keyword_.uvs) out_.uvs.push_back({row[found - 2], row[found - 1]});
+      if (keyword_.normals) out_.normals.push_back(to_mesh_floats({row[3], row[4], row[5]}));
+      if (keyword_.uvs)
+        out_.uvs.push_back({to_mesh_float(row[found - 2]), to_mesh_float(row[found - 1])});
     }
   }
 

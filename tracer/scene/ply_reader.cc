@@ -89,7 +89,7 @@ void read_vertices(Source& source, const PlyHeader& header, const PlyElement& el
   if (layout.has_normals) out.normals.reserve(expected);
   if (layout.has_uvs) out.uvs.reserve(expected);
 
-  std::array<float, k_slots> row{};
+  std::array<double, k_slots> row{};
   for (std::uint64_t i = 0; i < element.count; ++i) {
     source.begin(element, i);
     for (std::size_t p = 0; p < layout.slots.size(); ++p) {
@@ -97,12 +97,13 @@ void read_vertices(Source& source, const PlyHeader& header, const PlyElement& el
       if (layout.slots[p] == k_skipped)
         skip_property(source, property);
       else
-        row[layout.slots[p]] = to_mesh_float(source.number(property.type));
+        row[layout.slots[p]] = source.number(property.type) + 0.0;  // -0 becomes 0
     }
     source.end();
     out.positions.push_back({row[k_x], row[k_y], row[k_z]});
-    if (layout.has_normals) out.normals.push_back({row[k_nx], row[k_ny], row[k_nz]});
-    if (layout.has_uvs) out.uvs.push_back({row[k_u], row[k_v]});
+    if (layout.has_normals)
+      out.normals.push_back(to_mesh_floats({row[k_nx], row[k_ny], row[k_nz]}));
+    if (layout.has_uvs) out.uvs.push_back({to_mesh_float(row[k_u]), to_mesh_float(row[k_v])});
   }
 }
 

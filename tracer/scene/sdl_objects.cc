@@ -11,22 +11,22 @@
 namespace ds {
 namespace {
 
-std::optional<Mesh> read_ply(const SdlNode& node) {
+std::optional<FileMesh> read_ply(const SdlNode& node) {
   const std::optional<std::filesystem::path> file = node.file("ply");
   if (!file) return std::nullopt;
   try {
-    return read_model(*file).mesh;
+    return read_model(*file, Winding::as_stored).mesh;
   } catch (const Error& error) {
     node.error("ply", "{}", error.what());
     return std::nullopt;
   }
 }
 
-std::vector<Vec3> read_vectors(const SdlNode& node, std::string_view property) {
+std::vector<Vec3d> read_vectors(const SdlNode& node, std::string_view property) {
   const std::vector<double> v = node.list(property, 3);
-  std::vector<Vec3> result;
+  std::vector<Vec3d> result;
   for (std::size_t i = 0; i + 2 < v.size(); i += 3)
-    result.push_back(to_float(Vec3d{v[i], v[i + 1], v[i + 2]}));
+    result.push_back({v[i], v[i + 1], v[i + 2]});
   return result;
 }
 
@@ -37,18 +37,17 @@ void check_count(const SdlNode& node, std::string_view property, std::size_t fou
 }
 
 /// vertices, faces, normals and uvs as numbers in the file.
-std::optional<Mesh> read_inlined(const SdlNode& node) {
-  Mesh mesh;
+std::optional<FileMesh> read_inlined(const SdlNode& node) {
+  FileMesh mesh;
   mesh.positions = read_vectors(node, "vertices");
-  mesh.normals = read_vectors(node, "normals");
+  for (const Vec3d normal : read_vectors(node, "normals"))
+    mesh.normals.push_back(to_float(normalized(normal)));
   const std::vector<double> uvs = node.list("uvs", 2);
   for (std::size_t i = 0; i + 1 < uvs.size(); i += 2)
     mesh.uvs.push_back({static_cast<float>(uvs[i]), static_cast<float>(uvs[i + 1])});
   const std::size_t vertices = mesh.positions.size();
   check_count(node, "normals", mesh.normals.size(), vertices);
   check_count(node, "uvs", mesh.uvs.size(), vertices);
-  for (Vec3& normal : mesh.normals)
-    normal = normalized(normal);
 
   const std::vector<double> faces = node.list("faces", 3);
   for (const double index : faces)
@@ -67,10 +66,10 @@ std::optional<Mesh> read_inlined(const SdlNode& node) {
 
 /// Points by `m`, normals by its inverse transpose. A mirroring matrix turns the winding round, so
 /// that the outside stays the outside.
-void transform(Mesh& mesh, const Mat4& m) {
+void transform(FileMesh& mesh, const Mat4& m) {
   if (m == Mat4{}) return;
-  for (Vec3& position : mesh.positions)
-    position = to_float(m.point(to_double(position)));
+  for (Vec3d& position : mesh.positions)
+    position = m.point(position);
   const Mat4 inverse = portable::inverse(m);
   for (Vec3& normal : mesh.normals)
     normal = to_float(portable::transform_normal(inverse, to_double(normal)));
@@ -79,7 +78,7 @@ void transform(Mesh& mesh, const Mat4& m) {
       std::swap(triangle[1], triangle[2]);
 }
 
-std::optional<Mesh> shape_of(const SdlNode& node) {
+std::optional<FileMesh> shape_of(const SdlNode& node) {
   const std::optional<std::string> name = node.text("shape");
   if (!name) return std::nullopt;
   const auto found = node.reader().shapes.find(*name);
@@ -88,7 +87,7 @@ std::optional<Mesh> shape_of(const SdlNode& node) {
   return std::nullopt;
 }
 
-std::optional<Mesh> read_object_mesh(const SdlNode& node) {
+std::optional<FileMesh> read_object_mesh(const SdlNode& node) {
   const int sources = int{node.has("ply")} + int{node.has("shape")} + int{node.has("vertices")};
   if (sources != 1) {
     node.error("", "wanted one of ply, shape and vertices, found {}", sources);
@@ -148,11 +147,14 @@ void read_object(const SdlNode& node) {
   object.id = node.id("id").value_or(0);
   if (object.id == k_model_object_id)
     node.error("id", "{} is the id of the dataset's model, take another", object.id);
-  std::optional<Mesh> mesh = read_object_mesh(node);
+  std::optional<FileMesh> mesh = read_object_mesh(node);
   const Mat4 transformation = node.matrix("transformation");
   if (!mesh || object.material < 0) return;
+  // What shines does so from the front, which may be meant to be the inner side.
+  if (!node.reader().scene.materials[static_cast<std::size_t>(object.material)].emits)
+    turn_outwards(*mesh);
   transform(*mesh, transformation);
-  object.mesh = std::move(*mesh);
+  object.mesh = in_floats(std::move(*mesh));
   apply_power(node, object);
   node.reader().scene.objects.push_back(std::move(object));
 }
@@ -161,7 +163,7 @@ void read_shape(const SdlNode& node) {
   const std::string type = node.type("mesh");
   if (type != "mesh" && type != "inlinedmesh") return node.refuse_type(type);
   if (type == "mesh" && !node.has("ply")) node.error("", "ply is missing");
-  std::optional<Mesh> mesh = type == "mesh" ? read_ply(node) : read_inlined(node);
+  std::optional<FileMesh> mesh = type == "mesh" ? read_ply(node) : read_inlined(node);
   if (type == "mesh" && mesh) transform(*mesh, node.matrix("transformation"));
   if (mesh) node.reader().shapes.emplace(node.name(), std::move(*mesh));
 }

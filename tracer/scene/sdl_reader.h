@@ -42,7 +42,7 @@ struct SdlReader {
   std::map<std::string, TextureRef> textures;        ///< constants are folded
   std::map<std::string, ConductorIndex> conductors;  ///< fresnel* textures
   std::map<std::string, int> materials;              ///< index into scene.materials
-  std::map<std::string, Mesh> shapes;
+  std::map<std::string, FileMesh> shapes;
   std::map<int, PowerEmission> power_emissions;  ///< by material
   bool environment = false;                      ///< objects and lights may stand in the file
 };

@@ -24,7 +24,7 @@ using rays::corners_of;
 constexpr std::uint32_t k_leaf_bit = 0x80000000u;
 
 std::vector<Corners> teapot() {
-  return corners_of(read_model(DS_SOURCE_DIR "/assets/models/teapot-1.ply").mesh);
+  return corners_of(in_floats(read_model(DS_SOURCE_DIR "/assets/models/teapot-1.ply").mesh));
 }
 
 struct Shape {

@@ -15,16 +15,16 @@ Hash128 hash_of(std::string_view bytes) {
 
 /// Saves a mesh as another program might.
 template <typename T>
-std::string as_binary_ply(const Mesh& mesh, std::endian order) {
+std::string as_binary_ply(const FileMesh& mesh, std::endian order) {
   std::string file = fmt::format(
       "ply\nformat binary_{}_endian 1.0\nelement vertex {}\nproperty {} x\nproperty {} y\n"
       "property {} z\nelement face {}\nproperty list uchar uint vertex_index\nend_header\n",
       order == std::endian::little ? "little" : "big", mesh.positions.size(),
       sizeof(T) == 4 ? "float" : "double", sizeof(T) == 4 ? "float" : "double",
       sizeof(T) == 4 ? "float" : "double", mesh.triangles.size());
-  for (const Vec3 p : mesh.positions)
-    for (const float x : {p.x, p.y, p.z})
-      put<T>(file, double{x}, order);
+  for (const Vec3d p : mesh.positions)
+    for (const double x : {p.x, p.y, p.z})
+      put<T>(file, x, order);
   for (const auto& t : mesh.triangles) {
     put<std::uint8_t>(file, 3, order);
     for (const std::uint32_t v : t)
@@ -33,11 +33,11 @@ std::string as_binary_ply(const Mesh& mesh, std::endian order) {
   return file;
 }
 
-std::string as_off(const Mesh& mesh, const char* number) {
+std::string as_off(const FileMesh& mesh, const char* number) {
   std::string file =
       fmt::format("# saved again\nCOFF {} {} 0\n", mesh.positions.size(), mesh.triangles.size());
-  for (const Vec3 p : mesh.positions) {
-    for (const float x : {p.x, p.y, p.z})
+  for (const Vec3d p : mesh.positions) {
+    for (const double x : {p.x, p.y, p.z})
       file += fmt::format(fmt::runtime(number), x) + " ";
     file += "255 255 255\n";
   }
@@ -50,7 +50,7 @@ TEST(GeometryHash, DoesNotDependOnTheFormat) {
   // Coordinates with no short decimal form, a negative zero, and a very small number.
   const std::string file = replaced(replaced(k_tetra_off, "4 0 0", "0.1 -0 1e-40"), "0 4 0",
                                     "0.333333333 -7.00000047 1e17");
-  const Mesh mesh = parse_model(file, "m").mesh;
+  const FileMesh mesh = parse_model(file, "m").mesh;
   const Hash128 hash = geometry_hash(mesh);
   EXPECT_EQ(hash_of(as_binary_ply<float>(mesh, std::endian::little)), hash);
   EXPECT_EQ(hash_of(as_binary_ply<float>(mesh, std::endian::big)), hash);
@@ -60,13 +60,32 @@ TEST(GeometryHash, DoesNotDependOnTheFormat) {
   EXPECT_EQ(hash_of(k_tetra_ply), hash_of(k_tetra_off));
 }
 
+TEST(GeometryHash, FarFromTheOriginIsOfTheDoubles) {
+  // At a survey's coordinates a step that floats do not see is another body, and formats and
+  // spellings still change nothing.
+  const std::string file =
+      "OFF 4 4 0\n412345.678 5678901.234 0\n412346.778 5678901.234 0\n412345.678 5678902.034 0\n"
+      "412345.678 5678901.234 0.4\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+  const FileMesh mesh = parse_model(file, "m").mesh;
+  EXPECT_EQ(mesh.positions[0], (Vec3d{412345.678, 5678901.234, 0}));
+  const Hash128 hash = geometry_hash(mesh);
+  EXPECT_EQ(hash_of(as_binary_ply<double>(mesh, std::endian::big)), hash);
+  EXPECT_EQ(hash_of(as_off(mesh, "{:.17g}")), hash);
+  EXPECT_EQ(hash_of(as_off(mesh, "{:.25e}")), hash);
+  EXPECT_NE(hash_of(replaced(file, "412346.778", "412346.779")), hash);
+  EXPECT_NE(hash_of(as_binary_ply<float>(mesh, std::endian::big)), hash);
+  // A vertex far from the others that no face uses does not make the body a near one.
+  EXPECT_EQ(hash_of(replaced(replaced(file, "OFF 4 4 0", "OFF 5 4 0"), "0.4\n", "0.4\n0 0 0\n")),
+            hash);
+}
+
 TEST(GeometryHash, ChangesWithEveryPart) {
-  const Mesh mesh =
+  const FileMesh mesh =
       parse_model("STNOFF 3 1 0\n0 0 0 0 0 1 0 0\n1 0 0 0 0 1 1 0\n0 1 0 0 0 1 0 1\n3 0 1 2\n", "m")
           .mesh;
   const Hash128 hash = geometry_hash(mesh);
-  Mesh changed = mesh;
-  changed.positions[2].y = 1.0000001F;
+  FileMesh changed = mesh;
+  changed.positions[2].y = 1.0000001;
   EXPECT_NE(geometry_hash(changed), hash);
   changed = mesh;
   changed.normals[0].x = 1e-30F;
@@ -81,9 +100,10 @@ TEST(GeometryHash, ChangesWithEveryPart) {
   changed.normals.clear();
   EXPECT_NE(geometry_hash(changed), hash);
   // Normals do not pass for positions.
-  changed = mesh;
-  std::swap(changed.positions, changed.normals);
-  EXPECT_NE(geometry_hash(changed), hash);
+  Mesh swapped = in_floats(mesh);
+  EXPECT_EQ(geometry_hash(swapped), hash);
+  std::swap(swapped.positions, swapped.normals);
+  EXPECT_NE(geometry_hash(swapped), hash);
 }
 
 TEST(GeometryHash, IsTheSameOnEveryMachine) {

@@ -32,7 +32,7 @@ TEST(Mend, LeavesASoundModelAlone) {
   EXPECT_EQ(r.triangles, 4U);
   EXPECT_EQ(r.triangles_kept, 4U);
   EXPECT_EQ(r.n_gons + r.short_faces + r.out_of_range + r.non_finite + r.bad_attributes +
-                r.zero_area + r.duplicate_faces + r.unreferenced + r.flipped,
+                r.zero_area + r.duplicate_faces + r.unreferenced + r.flipped + r.against,
             0U);
 }
 
@@ -83,7 +83,7 @@ TEST(Mend, RemovesDuplicatesWhateverTheirOrder) {
 TEST(Mend, DropsVerticesNothingUsesInOrder) {
   const Model model =
       parse_model("OFF 6 1 0\n9 9 9\n1 0 0\n8 8 8\n0 1 0\n0 0 1\n7 7 7\n3 4 1 3\n", "m");
-  EXPECT_EQ(model.mesh.positions, (std::vector<Vec3>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
+  EXPECT_EQ(model.mesh.positions, (std::vector<Vec3d>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
   EXPECT_EQ(model.mesh.triangles, (samples::Triangles{{2, 0, 1}}));
   EXPECT_EQ(model.report.unreferenced, 3U);
 }
@@ -95,14 +95,14 @@ TEST(Mend, CountsShortFacesAndNGons) {
   EXPECT_EQ(model.report.triangles, 6U);
 }
 
-TEST(Mend, CountsFlippedTrianglesAcrossDuplicatedVertices) {
+TEST(Mend, TurnsFlippedTrianglesAcrossDuplicatedVertices) {
   // The third face turned over, its corners written as vertices of their own.
   const Model model = parse_model(
       "OFF 7 4 0\n0 0 0\n4 0 0\n0 4 0\n0 0 4\n0 0 0\n0 0 4\n0 4 0\n"
       "3 0 2 1\n3 0 1 3\n3 4 6 5\n3 1 2 3\n",
       "m");
   EXPECT_EQ(model.report.flipped, 1U);
-  EXPECT_EQ(model.mesh.triangles[2], (std::array<std::uint32_t, 3>{4, 6, 5}));
+  EXPECT_EQ(model.mesh.triangles[2], (std::array<std::uint32_t, 3>{4, 5, 6}));
 }
 
 TEST(Mend, ReplacesBadNormalsAndUvsByZero) {

@@ -15,16 +15,18 @@ using samples::replaced;
 constexpr NormaliseOptions k_as_it_is{
     .up = UpAxis::z, .size_m = 0, .place_on_ground = false, .centre = Centring::none};
 
-Mesh model(const std::string& file) {
+FileMesh model(const std::string& file) {
   return parse_model(file, "m").mesh;
 }
 
+template <typename Position>
 struct Bounds {
-  Vec3 least, most;
+  Position least, most;
 };
-Bounds bounds(const Mesh& mesh) {
-  Bounds b{mesh.positions[0], mesh.positions[0]};
-  for (const Vec3 p : mesh.positions) {
+template <typename Position>
+Bounds<Position> bounds(const BasicMesh<Position>& mesh) {
+  Bounds<Position> b{mesh.positions[0], mesh.positions[0]};
+  for (const Position p : mesh.positions) {
     b.least = {std::min(b.least.x, p.x), std::min(b.least.y, p.y), std::min(b.least.z, p.z)};
     b.most = {std::max(b.most.x, p.x), std::max(b.most.y, p.y), std::max(b.most.z, p.z)};
   }
@@ -40,7 +42,7 @@ constexpr double k_rounding = 1e-8;
 TEST(Normalise, PlacesABoxAsTheThesisDoes) {
   // 2 wide, 4 high (Y up), 1 deep: the height becomes z.
   const Mesh mesh = normalise(model(box_off(2, 4, 1)), {});
-  const Bounds b = bounds(mesh);
+  const Bounds<Vec3> b = bounds(mesh);
   expect_near(b.least, {-0.04F, -0.02F, -0.0574F}, k_rounding);
   expect_near(b.most, {0.04F, 0.02F, 0.16F - 0.0574F}, k_rounding);
   EXPECT_EQ(b.least.z, -0.0574F);
@@ -56,14 +58,14 @@ TEST(Normalise, TurnsYUpToZUpWithoutMirroring) {
 }
 
 TEST(Normalise, EachStepCanBeSwitchedOff) {
-  const Mesh source = model(replaced(samples::k_tetra_off, "0 0 0", "-1 0.5 2"));
+  const FileMesh source = model(replaced(samples::k_tetra_off, "0 0 0", "-1 0.5 2"));
   const Mesh same = normalise(source, k_as_it_is);
-  EXPECT_EQ(bounds(same).least, bounds(source).least);
-  EXPECT_EQ(bounds(same).most, bounds(source).most);
+  EXPECT_EQ(to_double(bounds(same).least), bounds(source).least);
+  EXPECT_EQ(to_double(bounds(same).most), bounds(source).most);
 
   NormaliseOptions only_size = k_as_it_is;
   only_size.size_m = 10;
-  const Bounds scaled = bounds(normalise(source, only_size));
+  const Bounds<Vec3> scaled = bounds(normalise(source, only_size));
   expect_near(scaled.least, {-2, 0, 0}, 1e-6);
   expect_near(scaled.most, {8, 8, 8}, 1e-6);
 
@@ -84,7 +86,7 @@ TEST(Normalise, CentreOfMassIsThatOfTheSurface) {
   const double centre = (16 + 8 * std::numbers::sqrt3) * 4 / 3 / (24 + 8 * std::numbers::sqrt3);
   NormaliseOptions options = k_as_it_is;
   options.centre = Centring::mass;
-  const Bounds b = bounds(normalise(model(samples::k_tetra_off), options));
+  const Bounds<Vec3> b = bounds(normalise(model(samples::k_tetra_off), options));
   expect_near(b.least, {static_cast<float>(-centre), static_cast<float>(-centre), 0}, 2e-7);
 }
 
@@ -103,6 +105,94 @@ TEST(Normalise, AFarModelKeepsItsDigits) {
   ASSERT_EQ(near_mesh.positions.size(), far_mesh.positions.size());
   for (std::size_t i = 0; i < near_mesh.positions.size(); ++i)
     expect_near(near_mesh.positions[i], far_mesh.positions[i], 1e-9);
+}
+
+/// Two boxes, 1.1 x 0.8 x 2.6 m, moved: as binary PLY of doubles, and as texts of all digits.
+std::vector<std::string> figures(Vec3d by) {
+  std::vector<Vec3d> vertices;
+  for (const auto& [low, high] : {std::pair{Vec3d{0, 0, 0}, Vec3d{1.1, 0.8, 0.4}},
+                                  {Vec3d{0.05, 0.1, 0.4}, Vec3d{0.35, 0.6, 2.6}}})
+    for (const double x : {low.x, high.x})
+      for (const double y : {low.y, high.y})
+        for (const double z : {low.z, high.z})
+          vertices.push_back(Vec3d{x, y, z} + by);
+  const int quads[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1},
+                           {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
+  std::string binary =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 16\nproperty double x\n"
+      "property double y\nproperty double z\nelement face 12\n"
+      "property list uchar int vertex_indices\nend_header\n";
+  std::string off = "OFF\n16 12 0\n", text;
+  for (const Vec3d v : vertices) {
+    text += fmt::format("{:.17g} {:.17g} {:.17g}\n", v.x, v.y, v.z);
+    for (const double x : {v.x, v.y, v.z})
+      samples::put<double>(binary, x, std::endian::little);
+  }
+  for (int box = 0; box < 2; ++box)
+    for (const auto& quad : quads) {
+      text += "4";
+      samples::put<std::uint8_t>(binary, 4, std::endian::little);
+      for (const int corner : quad) {
+        text += fmt::format(" {}", corner + 8 * box);
+        samples::put<std::int32_t>(binary, corner + 8 * box, std::endian::little);
+      }
+      text += "\n";
+    }
+  return {binary, off + text,
+          "ply\nformat ascii 1.0\nelement vertex 16\nproperty float x\nproperty float y\n"
+          "property float z\nelement face 12\nproperty list uchar int vertex_indices\n"
+          "end_header\n" +
+              text};
+}
+
+TEST(Normalise, ASurveysCoordinatesAreTakenOffInDouble) {
+  // Where floats step by 0.5 m. Doubles step by 1e-9 m and less, of 2.6 m that become 0.16.
+  for (const Centring centre : {Centring::mass, Centring::box})
+    for (const Normals normals : {Normals::smooth, Normals::flat}) {
+      NormaliseOptions options;
+      options.up = UpAxis::z;
+      options.centre = centre;
+      options.normals = normals;
+      const Mesh right = normalise(model(figures({})[0]), options);
+      for (const Vec3d by : {Vec3d{412345.678, 5678901.234, 87.5}, Vec3d{-5678901.234, 0, 0}})
+        for (const std::string& file : figures(by)) {
+          const Mesh mesh = normalise(model(file), options);
+          ASSERT_EQ(mesh.positions.size(), right.positions.size());
+          for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+            expect_near(mesh.positions[i], right.positions[i], 2e-8);
+            expect_near(mesh.normals[i], right.normals[i], 1e-7);
+          }
+        }
+    }
+}
+
+TEST(Normalise, AMeshOfAnyScaleKeepsItsDigits) {
+  // Coordinates that no float holds at all: too small ones become 0, and the body a point.
+  std::string tiny =
+      "OFF\n4 4 0\n0 0 0\n4e-60 0 0\n0 4e-60 0\n0 0 4e-60\n"
+      "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+  const Mesh right = normalise(model(samples::k_tetra_off), {}), mesh = normalise(model(tiny), {});
+  ASSERT_EQ(mesh.positions.size(), right.positions.size());
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    expect_near(mesh.positions[i], right.positions[i], 1e-8);
+}
+
+TEST(Normalise, WhereFloatsCannotHoldAModelItIsAnError) {
+  // Left at its survey's coordinates, or put on a ground too far away for its size.
+  NormaliseOptions options = k_as_it_is;
+  try {
+    normalise(model(figures({412345.678, 5678901.234, 87.5})[1]), options);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::asset);
+    EXPECT_THAT(error.what(), testing::HasSubstr("5.6789e+06 m from the world's origin"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("models.centre"));
+  }
+  options = {};
+  options.ground_z_m = 1e6;
+  EXPECT_THROW(normalise(model(samples::k_tetra_off), options), Error);
+  options.size_m = 1e3;
+  EXPECT_NO_THROW(normalise(model(samples::k_tetra_off), options));
 }
 
 TEST(Normalise, ACubeSplitsIntoTwentyFourVertices) {
@@ -188,7 +278,8 @@ TEST(Normalise, KeepTurnsTheStoredNormals) {
   NormaliseOptions options = k_as_it_is;
   options.up = UpAxis::y;
   options.normals = Normals::keep;
-  const Mesh source = model(k_with_normals), mesh = normalise(source, options);
+  const FileMesh source = model(k_with_normals);
+  const Mesh mesh = normalise(source, options);
   EXPECT_EQ(mesh.normals, (std::vector<Vec3>{{0, -1, 0}, {0, 0, 1}, {0, -1, 0}, {0.6F, -0.8F, 0}}));
   EXPECT_EQ(mesh.triangles, source.triangles);
   EXPECT_EQ(mesh.uvs, source.uvs);
@@ -197,7 +288,7 @@ TEST(Normalise, KeepTurnsTheStoredNormals) {
 TEST(Normalise, KeepWantsNormals) {
   NormaliseOptions options;
   options.normals = Normals::keep;
-  const Mesh mesh = model(samples::k_tetra_off);
+  const FileMesh mesh = model(samples::k_tetra_off);
   EXPECT_THROW(normalise(mesh, options), Error);
 }
 
@@ -215,7 +306,7 @@ TEST(Normalise, KeepsUvsAndSplitsWhereTheyDiffer) {
 }
 
 TEST(Normalise, HasNoNegativeZeroAndIsPure) {
-  const Mesh source = model(samples::k_tetra_off);
+  const FileMesh source = model(samples::k_tetra_off);
   for (const Normals normals : {Normals::smooth, Normals::flat}) {
     NormaliseOptions options;
     options.normals = normals;

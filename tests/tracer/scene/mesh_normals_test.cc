@@ -42,9 +42,9 @@ struct Surface {
 };
 
 void finish(Surface& s) {
-  std::vector<Vec3> rounded;
+  std::vector<Vec3d> rounded;
   for (const Vec3d p : s.positions)
-    rounded.push_back(to_float(p));
+    rounded.push_back(to_double(to_float(p)));
   s.welded = weld(rounded);
 }
 

@@ -20,12 +20,13 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
-void expect_sound(const Mesh& mesh, const fs::path& file) {
+template <typename Position>
+void expect_sound(const BasicMesh<Position>& mesh, const fs::path& file) {
   EXPECT_FALSE(mesh.triangles.empty()) << file;
   for (const auto& t : mesh.triangles)
     for (const std::uint32_t v : t)
       ASSERT_LT(v, mesh.positions.size()) << file;
-  for (const Vec3 p : mesh.positions)
+  for (const Position p : mesh.positions)
     ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) << file;
   for (const Vec3 n : mesh.normals)
     ASSERT_NEAR(length(to_double(n)), 1, 1e-6) << file;

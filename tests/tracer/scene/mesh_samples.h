@@ -28,7 +28,7 @@ inline std::string box_off(double x, double y, double z, const char* keyword = "
 }
 
 /// Corners (0,0,0) (4,0,0) (0,4,0) (0,0,4), faces seen from outside.
-inline const std::vector<Vec3> k_tetra_positions{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}};
+inline const std::vector<Vec3d> k_tetra_positions{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}};
 inline const Triangles k_tetra_triangles{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
 
 inline const char* const k_tetra_off =
@@ -40,7 +40,7 @@ inline const char* const k_tetra_ply =
     "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
     "0 0 0\n4 0 0\n0 4 0\n0 0 4\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
 
-inline void expect_tetra(const Mesh& mesh) {
+inline void expect_tetra(const FileMesh& mesh) {
   EXPECT_EQ(mesh.positions, k_tetra_positions);
   EXPECT_EQ(mesh.triangles, k_tetra_triangles);
 }

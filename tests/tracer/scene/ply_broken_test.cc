@@ -79,8 +79,8 @@ std::string binary_tetra(const char* vertices = "4", const char* faces = "4") {
       "ply\nformat binary_big_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
       "property float z\nelement face {}\nproperty list int int vertex_index\nend_header\n",
       vertices, faces);
-  for (const Vec3 p : samples::k_tetra_positions)
-    for (const float x : {p.x, p.y, p.z})
+  for (const Vec3d p : samples::k_tetra_positions)
+    for (const double x : {p.x, p.y, p.z})
       put<float>(file, x, std::endian::big);
   for (const auto& t : samples::k_tetra_triangles) {
     put<std::int32_t>(file, 3, std::endian::big);

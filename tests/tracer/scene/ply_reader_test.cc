@@ -64,7 +64,7 @@ std::string tetra_with_extras(std::optional<std::endian> order, const Type& coor
       out.value(ushort, k);
     out.end();
   }
-  for (const Vec3 p : samples::k_tetra_positions) {
+  for (const Vec3d p : samples::k_tetra_positions) {
     out.value(coordinate, p.z);
     out.value(count, 2);
     out.value(number, 0.25);
@@ -174,7 +174,7 @@ TEST(PlyReader, BinaryBodyMayBeginLikeALineBreak) {
         "\n", eol);
     file += std::string("\x0a\x00\x00\x0d\x01\x00\x00\x01\x02\x03\x00\x01\x02", 13);
     const Model model = parse_model(file, "m");
-    EXPECT_EQ(model.mesh.positions, (std::vector<Vec3>{{10, 0, 0}, {13, 1, 0}, {0, 1, 2}}));
+    EXPECT_EQ(model.mesh.positions, (std::vector<Vec3d>{{10, 0, 0}, {13, 1, 0}, {0, 1, 2}}));
   }
 }
 
