@@ -93,7 +93,7 @@ LightAnswer ask(const LightQuestion& q) {
 }
 
 namespace {
-ViewData view_of(const std::array<float, 31>& words) {
+ViewData view_of(const std::array<float, 44>& words) {
   ViewData view;
   static_assert(sizeof(view) == sizeof(words));
   std::memcpy(&view, words.data(), sizeof(view));

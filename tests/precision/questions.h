@@ -46,7 +46,7 @@ struct LightAnswer {
 };
 
 struct CameraQuestion {
-  std::array<float, 31> view{};  ///< the words of ViewData
+  std::array<float, 44> view{};  ///< the words of ViewData
   std::array<float, 2> place{};  ///< in pixels
   std::array<float, 2> lens_numbers{};
 };
@@ -56,7 +56,7 @@ struct CameraAnswer {
 
 /// A sample of a pixel that looks straight at an image sky.
 struct SkyQuestion {
-  std::array<float, 31> view{};  ///< the words of ViewData
+  std::array<float, 44> view{};  ///< the words of ViewData
   const std::vector<float>* lights = nullptr;
   const std::vector<float>* tables = nullptr;
   unsigned x = 0, y = 0, sample = 0;

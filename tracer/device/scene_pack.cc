@@ -32,6 +32,16 @@ Vec3 face_normal(const Corners& c) {
       normalized(cross(to_double(c[1]) - to_double(c[0]), to_double(c[2]) - to_double(c[0]))));
 }
 
+/// A vertex' stored normal as the normal of one triangle's corner. It tells a line; which way along
+/// it is out, the triangle's own side tells: files hold normals against their winding, and a vertex
+/// may belong to triangles of both windings. So all corners' normals, and what is interpolated of
+/// them, are on the triangle's own side.
+Vec3 corner_normal(const Mesh& mesh, std::uint32_t vertex, Vec3 own) {
+  const Vec3 stored = mesh.normals.empty() ? Vec3{} : mesh.normals[vertex];
+  if (stored == Vec3{}) return own;
+  return dot(to_double(stored), to_double(own)) < 0 ? -stored : stored;
+}
+
 /// `tied`: Ties::flags from the object's first triangle on.
 void pack_object(const Object& object, std::uint32_t light, const std::uint32_t* tied, Words& out) {
   const Mesh& mesh = object.mesh;
@@ -39,9 +49,9 @@ void pack_object(const Object& object, std::uint32_t light, const std::uint32_t*
     const Corners corners = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
     for (const Vec3& p : corners)
       out.add(p);
+    const Vec3 own = face_normal(corners);
     for (const std::uint32_t i : t)
-      out.add(mesh.normals.empty() || mesh.normals[i] == Vec3{} ? face_normal(corners)
-                                                                : mesh.normals[i]);
+      out.add(corner_normal(mesh, i, own));
     for (const std::uint32_t i : t) {
       out.add(mesh.uvs.empty() ? 0.0f : mesh.uvs[i].x);
       out.add(mesh.uvs.empty() ? 0.0f : mesh.uvs[i].y);

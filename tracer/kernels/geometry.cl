@@ -31,7 +31,8 @@ __kernel void trace_geometry(const __global float8* restrict nodes,
   // planar depth.
   Ray ray;
   for (int axis = 0; axis < 3; ++axis) {
-    ray.origin[axis] = view->position[axis];
+    ray.origin[axis] =
+        fma(sx, view->start_right[axis], fma(sy, view->start_up[axis], view->start[axis]));
     ray.direction[axis] = fma(sx, view->right[axis], fma(sy, view->up[axis], view->forward[axis]));
   }
   ray.t_max = 1e30f;
@@ -47,5 +48,5 @@ __kernel void trace_geometry(const __global float8* restrict nodes,
   }
   const bool met = hit.id != k_none;
   objects[i] = met ? as_uint(triangles[hit.id * k_triangle_words + k_triangle_object]) : k_none;
-  depths[i] = met ? passed + hit.t : 0.0f;
+  depths[i] = met ? view->start_depth + (passed + hit.t) : 0.0f;
 }

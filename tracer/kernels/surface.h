@@ -45,7 +45,8 @@ DS_FN real3 facing_normal(real3 shading, real3 wo) {
   return choose(lift > 0.0f, unit(add_scaled(shading, wo, lift)), shading);
 }
 
-/// A triangle's corners: world positions, metres, and unit normals.
+/// A triangle's corners: world positions, metres, and unit normals, on the side of the triangle's
+/// own.
 typedef struct {
   real3 position[3], normal[3];
 } Corners;
@@ -67,7 +68,7 @@ DS_FN Surface surface_at(const Corners* c, real b1, real b2, real3 wo) {
   s.normal = scale(own, side);
   const real3 interpolated = add_scaled(
       add_scaled(scale(c->normal[0], 1.0f - b1 - b2), c->normal[1], b1), c->normal[2], b2);
-  // Opposite corner normals can cancel; the triangle's own normal stands in.
+  // Grazing corner normals can cancel; the triangle's own normal stands in.
   const real3 smooth = choose(dot(interpolated, interpolated) > 1e-6f, unit(interpolated), own);
   s.shading = facing_normal(scale(smooth, side), wo);
   s.u = s.v = (real)(0.0f);

@@ -20,12 +20,19 @@ typedef struct {
 
 /// Constants of a picture: the camera and the engine settings.
 typedef struct {
-  float position[3];    ///< world, metres
-  float right[3];       ///< world vector of half the image plane's width at distance 1
-  float up[3];          ///< world vector of half the image plane's height at distance 1
-  float forward[3];     ///< unit, world
-  float lens_right[3];  ///< unit right times lens radius, metres
+  float start[3];        ///< world, metres: where rays through the picture's middle start; see
+                         ///< ray_start_m of tracer/render/view.h
+  float start_right[3];  ///< how far from there those through the middle of its right edge do, ...
+  float start_up[3];     ///< ... and of its upper edge
+  float start_depth;     ///< metres before the camera, along forward
+  float right[3];        ///< world vector of half the image plane's width at distance 1
+  float up[3];           ///< world vector of half the image plane's height at distance 1
+  float forward[3];      ///< unit, world
+  float lens_right[3];   ///< unit right times lens radius, metres
   float lens_up[3];
+  float
+      start_lens_right[3];  ///< the lens as rays' starts show it; at start_depth 0 the lens itself
+  float start_lens_up[3];
   float focus_distance;  ///< along forward, metres
   uint width, height;
   uint tiles_x;        ///< tiles in a row of tiles
@@ -37,7 +44,7 @@ typedef struct {
 } ViewData;
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(SceneData) == 11 * 4 && sizeof(ViewData) == 31 * 4, "no padding");
+static_assert(sizeof(SceneData) == 11 * 4 && sizeof(ViewData) == 44 * 4, "no padding");
 #endif
 
 enum {
@@ -59,7 +66,7 @@ enum {
 
   // A triangle's row in `triangles`.
   k_triangle_positions = 0,  ///< 9
-  k_triangle_normals = 9,    ///< 9, unit
+  k_triangle_normals = 9,    ///< 9, unit, on the triangle's own side
   k_triangle_uvs = 18,       ///< 6
   k_triangle_material = 24,  ///< row of materials
   k_triangle_light = 25,     ///< row of lights, or k_none

@@ -256,7 +256,8 @@ class Tracer::Picture {
   Picture(State& state, const Camera& camera, const EngineSettings& engine, FilmSums film,
           const std::atomic<bool>* stop)
       : s_(state), film_(std::move(film)), stop_(stop) {
-    const kernels::ViewData view = view_data(camera, engine);
+    const kernels::ViewData view =
+        view_data(camera, engine, ray_start_m(*s_.scene, camera, engine.width, engine.height));
     view_ = s_.device.upload(std::as_bytes(std::span(&view, 1)));
     sums_ = s_.device.upload(film_.planes);
     const DeviceScene& t = s_.device_scene;
@@ -427,7 +428,8 @@ Geometry Tracer::trace_geometry(const Camera& camera, int width, int height) {
   EngineSettings size;
   size.width = width;
   size.height = height;
-  const kernels::ViewData view = view_data(camera, size);
+  const kernels::ViewData view =
+      view_data(camera, size, ray_start_m(*s.scene, camera, width, height));
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   const Buffer view_buffer = s.device.upload(std::as_bytes(std::span(&view, 1)));
   const Buffer objects = s.device.make_buffer(pixels * sizeof(std::uint32_t));

@@ -84,18 +84,28 @@ void check_lens(const Camera& camera) {
 
 }  // namespace
 
-kernels::ViewData view_data(const Camera& camera, const EngineSettings& engine) {
+kernels::ViewData view_data(const Camera& camera, const EngineSettings& engine, double start_m) {
   const CameraFrame f = camera_frame(camera);
   check_lens(camera);
   const double longer = std::max(engine.width, engine.height);
   const double half = tan_half(camera.fov_deg);
+  const Vec3d right = f.right * (half * engine.width / longer);
+  const Vec3d up = f.up * (half * engine.height / longer);
   kernels::ViewData v{};
-  store(v.position, camera.position);
-  store(v.right, f.right * (half * engine.width / longer));
-  store(v.up, f.up * (half * engine.height / longer));
+  store(v.start, camera.position + f.forward * start_m);
+  store(v.start_right, right * start_m);
+  store(v.start_up, up * start_m);
+  v.start_depth = static_cast<float>(start_m);
+  store(v.right, right);
+  store(v.up, up);
   store(v.forward, f.forward);
   store(v.lens_right, f.right * camera.lens_radius_m);
   store(v.lens_up, f.up * camera.lens_radius_m);
+  // Rays through one pixel meet in the plane in focus.
+  const double to_focus =
+      camera.lens_radius_m > 0 ? camera.lens_radius_m * (1 - start_m / camera.focus_distance_m) : 0;
+  store(v.start_lens_right, f.right * to_focus);
+  store(v.start_lens_up, f.up * to_focus);
   v.focus_distance = static_cast<float>(camera.focus_distance_m);
   v.width = static_cast<std::uint32_t>(engine.width);
   v.height = static_cast<std::uint32_t>(engine.height);

@@ -18,9 +18,16 @@ struct CameraFrame {
 /// too far (k_farthest_coordinate).
 CameraFrame camera_frame(const Camera& camera);
 
-/// The constants the kernels take. fov_deg spans the longer side. Throws Error(recipe) for a number
-/// of the camera out of its range (scene.h).
-kernels::ViewData view_data(const Camera& camera, const EngineSettings& engine);
+/// How far before the camera, along its forward axis, its rays start: 0, or where a pixel is so
+/// narrow that floats would tell it from its neighbour badly, just before the first that any of
+/// them could meet. A ray that starts at a camera at 100 km from what it sees is misplaced there by
+/// the 8 mm between floats at that distance; one that starts beside it is not, for its start comes
+/// from doubles, pixel by pixel.
+double ray_start_m(const Scene& scene, const Camera& camera, int width, int height);
+
+/// The constants the kernels take. fov_deg spans the longer side; rays start `start_m` before the
+/// camera. Throws Error(recipe) for a number of the camera out of its range (scene.h).
+kernels::ViewData view_data(const Camera& camera, const EngineSettings& engine, double start_m = 0);
 
 /// tan of half the angle, degrees in (0, 180), from + - * / and sqrt alone: the same bits on every
 /// machine.
