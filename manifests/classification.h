@@ -65,6 +65,8 @@ class Labels {
   /// Which of the entries `find` would use, below size().
   std::optional<std::size_t> find_index(std::string_view model_file_name) const;
   std::size_t size() const { return sorted_.size(); }
+  /// What the class file calls the entry of that index.
+  const std::string& name(std::size_t index) const { return sorted_.at(index).first; }
 
  private:
   std::optional<std::size_t> index_of(std::string_view key) const;

@@ -62,6 +62,7 @@ json to_json_value(const ImageRecord& image) {
           {"rejected_samples", image.rejected_samples},
           {"relative_error", image.relative_error ? json(*image.relative_error) : json()},
           {"film", to_json_value(image.film)},
+          {"pixel_counts", to_json_value(image.pixel_counts)},
           {"render_key", image.render_key.hex()},
           {"files_key", image.files_key.hex()},
           {"parts",
@@ -109,6 +110,9 @@ json to_json_value(const DatasetRecord& dataset) {
         {"mask",
          "255 where the ray through the pixel's centre and the pinhole meets the model first, "
          "else 0"}}}};
+  for (const Concern& concern : dataset.concerns)
+    object["concerns"][concern.name] = {
+        {"count", concern.count}, {"of", concern.of}, {"examples", concern.examples}};
   for (const auto& [model, damage] : dataset.mended_models)
     object["mended_models"][model] = counts_object(damage);
   return object;

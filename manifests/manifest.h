@@ -2,7 +2,9 @@
 #pragma once
 
 #include "manifests/camera_geometry.h"
+#include "manifests/concerns.h"
 #include "manifests/licences.h"
+#include "manifests/pixel_counts.h"
 #include "tracer/base/hash.h"
 #include "tracer/render/render.h"
 #include "tracer/scene/mesh.h"
@@ -62,6 +64,7 @@ struct ImageRecord {
   /// samples; null in the file where one sample a pixel tells nothing of it.
   std::optional<double> relative_error{};
   FilmFacts film{};  ///< "film": samples taken, samples refused by kind, the error's 95 % interval
+  PixelCounts pixel_counts{};  ///< an object of the counts that were made
   Hash128 render_key, files_key;
   std::array<Hash128, 5> parts{};  ///< model, material, environment, camera, engine
 };
@@ -77,6 +80,9 @@ struct DatasetRecord {
   /// Model -> what its file held that no mesh can, and how often, by MeshReport's names. Only
   /// models that were mended; "mended_models" is not there where none was.
   std::vector<std::pair<std::string, MendedDamage>> mended_models{};
+  /// All kinds, whether there are any or not, as an object of name -> {"count", "of", "examples"}.
+  /// Empty where an older dsbuild wrote none.
+  std::vector<Concern> concerns{};
 };
 
 /// The line without its line break. Numbers must be finite and texts UTF-8: Error(asset) otherwise.

@@ -62,12 +62,13 @@ class Fields {
     to.emplace();
     number(name, *to);
   }
-  /// An older dsbuild wrote none.
-  void film(FilmFacts& to) {
-    const auto at = object_.find("film");
+  /// An object that an older dsbuild wrote none of.
+  template <typename T>
+  void object(const char* name, T& to, T (*read)(const json&)) {
+    const auto at = object_.find(name);
     if (at == object_.end()) return;
     try {
-      to = film_facts_from(*at);
+      to = read(*at);
     } catch (const Error& error) {
       diagnostics_.add(place_, "{}", error.what());
     }
@@ -187,7 +188,8 @@ ImageRecord image_from(const std::string& line, const SourcePlace& place,
   fields.number("tone_map_scale", image.tone_map_scale);
   fields.count("rejected_samples", image.rejected_samples);
   fields.optional_number("relative_error", image.relative_error);
-  fields.film(image.film);
+  fields.object("film", image.film, film_facts_from);
+  fields.object("pixel_counts", image.pixel_counts, pixel_counts_from);
   fields.hash("render_key", image.render_key);
   fields.hash("files_key", image.files_key);
   if (const json* parts = fields.find("parts")) read_parts(*parts, place, diagnostics, image);
@@ -271,6 +273,32 @@ void read_mended_models(const json& owner, const SourcePlace& place, Diagnostics
                });
 }
 
+/// Not there where an older dsbuild wrote the manifest; kinds that this one does not know are left
+/// out.
+void read_concerns(const json& owner, const SourcePlace& place, Diagnostics& diagnostics,
+                   std::vector<Concern>& to) {
+  const auto all = owner.find("concerns");
+  if (all == owner.end()) return;
+  if (!all->is_object()) {
+    diagnostics.add(place, "concerns must be an object, got {}", all->type_name());
+    return;
+  }
+  to = no_concerns();
+  for (Concern& concern : to) {
+    const auto one = all->find(concern.name);
+    if (one == all->end()) continue;
+    if (!one->is_object()) {
+      diagnostics.add(place, "concerns.{} must be an object, got {}", concern.name,
+                      one->type_name());
+      continue;
+    }
+    Fields members(*one, place, diagnostics);
+    members.count("count", concern.count);
+    members.count("of", concern.of);
+    read_texts(members, "examples", concern.examples);
+  }
+}
+
 std::string read_manifest_file(const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error))
@@ -309,6 +337,7 @@ DatasetRecord dataset_from_json(const std::string& text, const std::string& file
     dataset.licences = format == 1 ? licences_of_format_1(fields, *object, place, diagnostics)
                                    : licences_from(fields, place, diagnostics);
     read_mended_models(*object, place, diagnostics, dataset);
+    read_concerns(*object, place, diagnostics, dataset.concerns);
   }
   diagnostics.throw_if_any();
   return dataset;

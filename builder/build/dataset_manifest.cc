@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/dataset_manifest.h"
 
+#include "builder/build/dataset_concerns.h"
 #include "builder/build/licence_files.h"
 #include "tracer/base/files.h"
 
@@ -56,6 +57,7 @@ ImageRecord image_record(const PlannedImage& image, Database& database) {
                             output.kind,
                             {product->object, product->sha256, product->size_bytes},
                             product->pixels});
+    add_counts(record.pixel_counts, product->pixel_counts);
     if (output.kind == "image") {
       record.tone_map_scale = product->tone_map_scale;
       record.rejected_samples = product->rejected_samples;
@@ -98,6 +100,7 @@ DatasetRecord dataset_record(const Recipe& recipe, const std::map<std::string, M
   add_licences("materials", recipe.materials);
   add_licences("environments", recipe.environments);
   record.licences = group_licences(texts);
+  record.concerns = dataset_concerns(recipe, images);
   return record;
 }
 

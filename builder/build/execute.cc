@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/execute.h"
 
+#include "builder/build/dataset_concerns.h"
 #include "builder/build/dataset_manifest.h"
 #include "builder/build/host.h"
 #include "builder/build/killed_builds.h"
@@ -241,17 +242,22 @@ void Execution::finish() {
     (!image.error && is_in_place(placed, image) ? listed : lacking).push_back(&image);
   std::vector<ImageRecord> records;
   for (const PlannedImage* image : listed) {
-    const ImageRecord& record = records.emplace_back(image_record(*image, *dataset_.database));
+    ImageRecord& record = records.emplace_back(image_record(*image, *dataset_.database));
+    count_older_pixels(record, *image, dataset_.folder, *dataset_.database);
     if (record.film.capped && !image->elsewhere)
       result_.capped.emplace_back(record.id, record.film.developed_high.value_or(0));
   }
   const ManifestSources sources = manifest_sources(dataset_.recipe, plan_, listed, placed);
-  if (lacking.empty() && result_.built == 0 && manifest_stands(dataset_, sources, placed)) return;
+  if (lacking.empty() && result_.built == 0 && manifest_stands(dataset_, sources, placed)) {
+    result_.concerns = read_dataset_manifest(dataset_.folder).concerns;
+    return;
+  }
   const std::size_t made = records.size();
   add_older_records(records, dataset_, lacking, cut_short(), placed);
   DatasetRecord record = dataset_record(dataset_.recipe, plan_.mended, records);
   if (records.size() > made)
     record.counts.emplace_back("of_an_earlier_build", records.size() - made);
+  result_.concerns = record.concerns;
   write_manifest(dataset_.folder, record, records);
   remember_manifest(dataset_, sources);
 }

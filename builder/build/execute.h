@@ -2,6 +2,7 @@
 #pragma once
 
 #include "builder/build/image_maker.h"
+#include "manifests/concerns.h"
 
 #include <atomic>
 #include <cstdint>
@@ -33,6 +34,8 @@ struct BuildResult {
   bool stopped = false;  ///< by the user
   std::vector<std::pair<std::string, std::string>>
       failures;  ///< what ("human.ply/0", "14 images, ..."), why
+
+  std::vector<Concern> concerns;  ///< of all images that the manifest lists
 
   /// Images that max_spp ended before engine.error was reached, and the upper end of their error.
   std::vector<std::pair<std::string, double>> capped;

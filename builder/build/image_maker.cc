@@ -148,6 +148,8 @@ Product ImageMaker::develop_image(Work& work, const OutputFile& output) {
   product.rejected_samples = film.rejected_samples;
   product.relative_error = film.relative_error;
   product.facts = film.facts;
+  product.pixel_counts = count_picture(picture.pixels, picture.channels);
+  product.pixel_counts.white = clipped_pixels(film, tone_map);
   const std::vector<std::byte> bytes = encode_png(picture);
   return keep(work, std::move(product), bytes, {watch.seconds(), ""});
 }
@@ -159,10 +161,12 @@ Product ImageMaker::make_geometry_file(Work& work, const OutputFile& output) {
     work.geometry_run = {watch.seconds(), renderer().device()};
     work.done.traced = true;
   }
-  const std::vector<std::byte> bytes = output.kind == "mask"
-                                           ? encode_png(mask_picture(*work.geometry))
-                                           : encode_depth_exr(*work.geometry);
-  return keep(work, product_of(output.key, output.kind), bytes, work.geometry_run);
+  Product product = product_of(output.key, output.kind);
+  if (output.kind != "mask")
+    return keep(work, std::move(product), encode_depth_exr(*work.geometry), work.geometry_run);
+  const Picture mask = mask_picture(*work.geometry);
+  product.pixel_counts = count_mask(mask.pixels, mask.width, mask.height);
+  return keep(work, std::move(product), encode_png(mask), work.geometry_run);
 }
 
 Product ImageMaker::obtain(Work& work, const OutputFile& output) {

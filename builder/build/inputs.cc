@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/inputs.h"
 
+#include "builder/build/keys.h"
 #include "tracer/base/files.h"
 #include "tracer/base/hash.h"
 #include "tracer/render/render.h"
@@ -56,6 +57,16 @@ Mesh Inputs::model_mesh(const std::filesystem::path& file, const NormaliseOption
   return normalise(model.mesh, options);
 }
 
+const Sphere& Inputs::model_sphere(const std::filesystem::path& file,
+                                   const NormaliseOptions& options) {
+  return once(spheres_, file, [&](const auto& path) {
+    const Hash128 part = hash_text(canonical_model(model_geometry(path), options));
+    if (const auto known = database_.find_sphere(part, k_host_render_version))
+      return Sphere{{(*known)[0], (*known)[1], (*known)[2]}, (*known)[3]};
+    return new_spheres_.emplace(part, bounding_sphere(model_mesh(path, options))).first->second;
+  });
+}
+
 const Scene& Inputs::material(const std::filesystem::path& file) {
   return once(materials_, file, read_material);
 }
@@ -65,14 +76,18 @@ const Scene& Inputs::environment(const std::filesystem::path& folder) {
 }
 
 void Inputs::remember() {
-  if (new_models_.empty()) return;
+  if (new_models_.empty() && new_spheres_.empty()) return;
   Transaction transaction(database_.connection());
   for (const NewModel& model : new_models_) {
     if (model.stamp) database_.put_content(model.file, *model.stamp, model.content);
     database_.put_model(model.content, k_host_render_version, model.known);
   }
+  for (const auto& [part, sphere] : new_spheres_)
+    database_.put_sphere(part, k_host_render_version,
+                         {sphere.centre.x, sphere.centre.y, sphere.centre.z, sphere.radius_m});
   transaction.commit();
   new_models_.clear();
+  new_spheres_.clear();
 }
 
 }  // namespace ds

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "builder/db/database.h"
+#include "builder/recipe/camera_fit.h"
 #include "tracer/base/error.h"
 #include "tracer/scene/mesh.h"
 #include "tracer/scene/scene.h"
@@ -34,6 +35,8 @@ class Inputs {
   Hash128 model_geometry(const std::filesystem::path& file) { return model(file).geometry; }
   /// What reading it mended; throws likewise.
   const MendedDamage& model_damage(const std::filesystem::path& file) { return model(file).damage; }
+  /// The ball around the model as it is normalised. Reads it where the database does not know it.
+  const Sphere& model_sphere(const std::filesystem::path& file, const NormaliseOptions& options);
   /// Reads and normalises. Throws Error(asset) where the file is no longer the one `model_geometry`
   /// saw.
   Mesh model_mesh(const std::filesystem::path& file, const NormaliseOptions& options);
@@ -67,6 +70,8 @@ class Inputs {
   std::map<std::filesystem::path, Read<KnownModel>> models_;
   std::map<std::filesystem::path, Read<Scene>> materials_, environments_;
   std::vector<NewModel> new_models_;
+  std::map<std::filesystem::path, Read<Sphere>> spheres_;
+  std::map<Hash128, Sphere> new_spheres_;  ///< by the hash of the model part
 };
 
 }  // namespace ds

@@ -37,6 +37,8 @@ MadeProduct from_line(const std::string& line) {
     made.product.relative_error = error.get<double>();
   if (const auto facts = object.find("facts"); facts != object.end())
     made.product.facts = film_facts_from(*facts);
+  if (const auto counts = object.find("pixel_counts"); counts != object.end())
+    made.product.pixel_counts = pixel_counts_from(*counts);
   made.run.seconds = object.at("seconds").get<double>();
   made.run.device = object.at("device").get<std::string>();
   return made;
@@ -58,6 +60,7 @@ std::string to_record(const std::vector<MadeProduct>& made) {
         {"rejected_samples", product.rejected_samples},
         {"relative_error", product.relative_error ? json(*product.relative_error) : json()},
         {"facts", to_json_value(product.facts)},
+        {"pixel_counts", to_json_value(product.pixel_counts)},
         {"seconds", run.seconds},
         {"device", run.device}};
     text += object.dump(-1, ' ', false, json::error_handler_t::replace) + '\n';

@@ -23,7 +23,7 @@ struct MadeProduct {
 
 /// One text for what one image's making gave, kept beside the objects so that a lost database costs
 /// no tracing: one JSON object a line, the fields of Product and TraceRun
-/// ("facts" is missing where an older dsbuild wrote the record).
+/// ("facts" and "pixel_counts" are missing where an older dsbuild wrote the record).
 std::string to_record(const std::vector<MadeProduct>& made);
 /// Throws UnreadableRecord for a text that `to_record` did not write.
 std::vector<MadeProduct> from_record(const std::string& text);

@@ -154,6 +154,21 @@ std::map<std::string, std::string> licence_texts(const DatasetRecord& record) {
   return texts;
 }
 
+/// What the labels tell; the rest is counted from images.
+void compare_concerns(std::vector<Concern> before, std::vector<Concern> after,
+                      std::vector<std::string>& behind) {
+  if (before.empty()) {
+    behind.emplace_back("concerns: not counted by the version that wrote it");
+    return;
+  }
+  for (const char* name : {"models_absent", "models_unlisted"}) {
+    const std::uint64_t old_count = concern(before, name).count;
+    const std::uint64_t new_count = concern(after, name).count;
+    if (old_count != new_count)
+      behind.push_back(fmt::format("concerns.{}: {} -> {}", name, old_count, new_count));
+  }
+}
+
 void compare_datasets(const DatasetRecord& before, const DatasetRecord& after,
                       std::vector<std::string>& behind) {
   if (before.name != after.name) behind.push_back("name: " + change(before.name, after.name));
@@ -162,6 +177,7 @@ void compare_datasets(const DatasetRecord& before, const DatasetRecord& after,
   add_named(behind, "licence texts", differing(licence_texts(before), licence_texts(after)));
   add_named(behind, "mended models",
             differing(to_map(before.mended_models), to_map(after.mended_models)));
+  compare_concerns(before.concerns, after.concerns, behind);
   std::vector<std::string> settings =
       differing(settings_of(before.recipe_text), settings_of(after.recipe_text));
   std::erase_if(settings,

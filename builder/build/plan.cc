@@ -136,6 +136,9 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
     image.elsewhere = !shard.holds(spec.id);
     image.spec = std::move(spec);
     try {
+      if (dataset.recipe.camera_fit)
+        fit_image(image.spec, dataset.recipe,
+                  inputs.model_sphere(image.spec.model_file, dataset.recipe.normalise));
       if (image.spec.engine.target)
         image.spec.engine.target->tone_map =
             tone_map_of(dataset.recipe, inputs.environment(image.spec.environment_folder));

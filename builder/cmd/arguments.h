@@ -26,7 +26,8 @@ struct Arguments {
   bool time = false, recalibrate = false;
   std::optional<double> error;
   std::string budget;
-  bool json = false, dry_run = false, keep_going = false, force = false, explain = false;
+  bool json = false, dry_run = false, keep_going = false, force = false, explain = false,
+       strict = false;
   bool effects = false;
   bool rehash = false;
   bool adopt = false;
@@ -51,6 +52,7 @@ enum class Option {
   adopt,
   copy,
   explain,
+  strict,
   shard,
   effects,
   rerender,

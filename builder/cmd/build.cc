@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/execute.h"
 #include "builder/build/folder_lock.h"
+#include "builder/cmd/concerns_text.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/progress.h"
 #include "builder/cmd/stop_signal.h"
@@ -38,6 +39,7 @@ nlohmann::json to_json(const BuildResult& result, const Dataset& dataset) {
           {"programs_compiled", result.programs.compiled},
           {"programs_ahead", result.programs.ahead},
           {"stopped", result.stopped},
+          {"concerns", to_json(result.concerns)},
           {"failures", failures},
           {"capped", capped},
           {"folder", dataset.folder.string()}};
@@ -157,11 +159,12 @@ int run_build(const Arguments& arguments) {
     say(Stream::people, "dsbuild: error: {}: {}\n", what, why);
   if (result.stopped)
     say(Stream::people, "dsbuild: stopped; what is finished is recorded, build again to go on\n");
+  const std::size_t concerns = tell_concerns(result.concerns, dataset.recipe, arguments.strict);
   if (arguments.json)
     print_json(to_json(result, dataset));
   else
     print_result(result, dataset);
-  return result.ok() ? 0 : 1;
+  return result.ok() && concerns == 0 ? 0 : 1;
 }
 
 }  // namespace ds

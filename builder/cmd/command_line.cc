@@ -77,6 +77,12 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
     case Option::explain:
       verb.add_flag("--explain", to.explain, "say why each image is made");
       return;
+    case Option::strict:
+      verb.add_flag(
+          "--strict", to.strict,
+          "what makes a dataset useless is an error: empty masks, black pictures, classes "
+          "without an image, ... (exit code 1; all is made)");
+      return;
     case Option::shard:
       verb.add_option("--shard", to.shard,
                       "make only share I of N of the images, chosen by a hash of their names; when "

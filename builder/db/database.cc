@@ -3,6 +3,7 @@
 
 #include "builder/db/schema.h"
 #include "manifests/film_facts.h"
+#include "manifests/json_text.h"
 
 #include <nlohmann/json.hpp>
 
@@ -17,9 +18,25 @@ Hash128 hash_column(const Statement& row, int column) {
   return *hash;
 }
 
-FilmFacts facts_column(const Statement& row, int column) {
+constexpr const char* k_pixel_counts = "pixel_counts";
+
+/// What is known of a product beside its bytes, as one JSON object: FilmFacts and PixelCounts.
+std::string facts_text(const Product& product) {
+  nlohmann::json object = to_json_value(product.facts);
+  if (product.pixel_counts != PixelCounts{})
+    object[k_pixel_counts] = to_json_value(product.pixel_counts);
+  return canonical_json(object);
+}
+
+void read_facts(const std::string& text, Product& product) {
+  if (text.empty()) return;
   try {
-    return film_facts_from_text(row.text(column));
+    const nlohmann::json object = nlohmann::json::parse(text);
+    product.facts = film_facts_from(object);
+    if (const auto counts = object.find(k_pixel_counts); counts != object.end())
+      product.pixel_counts = pixel_counts_from(*counts);
+  } catch (const nlohmann::json::exception& error) {
+    throw DamagedDatabase(fmt::format("the database is damaged: facts: {}", error.what()));
   } catch (const Error& error) {
     throw DamagedDatabase(fmt::format("the database is damaged: {}", error.what()));
   }
@@ -109,6 +126,24 @@ void Database::put_model(Hash128 content, int reader, const KnownModel& model) {
       .run();
 }
 
+std::optional<std::array<double, 4>> Database::find_sphere(Hash128 model_part, int reader) {
+  Statement row =
+      connection_.prepare("SELECT x, y, z, radius FROM sphere WHERE model = ?1 AND reader = ?2");
+  if (!row.bind(1, model_part.hex()).bind(2, std::int64_t{reader}).step()) return std::nullopt;
+  return std::array{row.real(0), row.real(1), row.real(2), row.real(3)};
+}
+
+void Database::put_sphere(Hash128 model_part, int reader, const std::array<double, 4>& sphere) {
+  connection_.prepare("INSERT OR REPLACE INTO sphere VALUES (?1, ?2, ?3, ?4, ?5, ?6)")
+      .bind(1, model_part.hex())
+      .bind(2, std::int64_t{reader})
+      .bind(3, sphere[0])
+      .bind(4, sphere[1])
+      .bind(5, sphere[2])
+      .bind(6, sphere[3])
+      .run();
+}
+
 bool Database::has_products() {
   return connection_.prepare("SELECT 1 FROM product LIMIT 1").step();
 }
@@ -118,16 +153,11 @@ std::optional<Product> Database::find_product(Hash128 key) {
       "SELECT kind, object, size_bytes, sha256, pixels, tone_map_scale, rejected_samples, "
       "relative_error, facts FROM product WHERE key = ?1");
   if (!row.bind(1, key.hex()).step()) return std::nullopt;
-  return Product{key,
-                 row.text(0),
-                 hash_column(row, 1),
-                 row.count(2),
-                 row.text(3),
-                 hash_column(row, 4),
-                 row.real(5),
-                 row.count(6),
-                 row.optional_real(7),
-                 facts_column(row, 8)};
+  Product product{key,          row.text(0),  hash_column(row, 1),
+                  row.count(2), row.text(3),  hash_column(row, 4),
+                  row.real(5),  row.count(6), row.optional_real(7)};
+  read_facts(row.text(8), product);
+  return product;
 }
 
 void Database::put_product(const Product& product, const TraceRun& run) {
@@ -146,7 +176,17 @@ void Database::put_product(const Product& product, const TraceRun& run) {
       .bind_optional(9, product.relative_error)
       .bind(10, run.seconds)
       .bind(11, run.device)
-      .bind(12, to_text(product.facts))
+      .bind(12, facts_text(product))
+      .run();
+}
+
+void Database::add_pixel_counts(Hash128 key, const PixelCounts& counts) {
+  std::optional<Product> product = find_product(key);
+  if (!product) return;
+  add_counts(product->pixel_counts, counts);
+  connection_.prepare("UPDATE product SET facts = ?2 WHERE key = ?1")
+      .bind(1, key.hex())
+      .bind(2, facts_text(*product))
       .run();
 }
 

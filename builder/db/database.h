@@ -3,6 +3,7 @@
 
 #include "builder/db/file_stamp.h"
 #include "builder/db/sqlite.h"
+#include "manifests/pixel_counts.h"
 #include "tracer/base/hash.h"
 #include "tracer/render/render.h"
 #include "tracer/scene/mesh.h"
@@ -30,8 +31,9 @@ struct Product {
   double tone_map_scale = 1;           ///< images: the factor the tone map used
   std::uint64_t rejected_samples = 0;  ///< films and images
   std::optional<double>
-      relative_error{};  ///< films and images: Film::relative_error, where it is known
-  FilmFacts facts{};     ///< films and images: of the film
+      relative_error{};        ///< films and images: Film::relative_error, where it is known
+  FilmFacts facts{};           ///< films and images: of the film
+  PixelCounts pixel_counts{};  ///< images and masks; absent where an older dsbuild made them
 };
 
 /// How and when a film was made. Never in a manifest: another machine has other values.
@@ -107,9 +109,15 @@ class Database {
   std::optional<KnownModel> find_model(Hash128 content, int reader);
   void put_model(Hash128 content, int reader, const KnownModel& model);
 
+  /// x, y, z and radius of the ball around a normalised model, by the hash of its part of the key.
+  std::optional<std::array<double, 4>> find_sphere(Hash128 model_part, int reader);
+  void put_sphere(Hash128 model_part, int reader, const std::array<double, 4>& sphere);
+
   bool has_products();
   std::optional<Product> find_product(Hash128 key);
   void put_product(const Product& product, const TraceRun& run);
+  /// Adds counts to a product that was made without; nothing where there is no such product.
+  void add_pixel_counts(Hash128 key, const PixelCounts& counts);
 
   std::optional<DatasetRow> find_dataset(const std::string& id);
   void put_dataset(const DatasetRow& row);

@@ -22,6 +22,12 @@ CREATE TABLE geometry (
   damage TEXT NOT NULL,       -- mended, as JSON array of [name, count]
   PRIMARY KEY (content, reader)
 ) WITHOUT ROWID;
+CREATE TABLE sphere (         -- around models as they are normalised
+  model TEXT NOT NULL,        -- hash of the model's part of the key
+  reader INTEGER NOT NULL,
+  x REAL NOT NULL, y REAL NOT NULL, z REAL NOT NULL, radius REAL NOT NULL,
+  PRIMARY KEY (model, reader)
+) WITHOUT ROWID;
 CREATE TABLE product (
   key TEXT PRIMARY KEY,
   kind TEXT NOT NULL,
@@ -34,7 +40,7 @@ CREATE TABLE product (
   relative_error REAL,        -- NULL where nothing is known of it
   seconds REAL NOT NULL,
   device TEXT NOT NULL,
-  facts TEXT NOT NULL DEFAULT ''  -- FilmFacts as JSON
+  facts TEXT NOT NULL DEFAULT ''  -- FilmFacts, and PixelCounts as its "pixel_counts"
 ) WITHOUT ROWID;
 CREATE TABLE dataset (
   id TEXT PRIMARY KEY,
@@ -69,9 +75,9 @@ CREATE TABLE build (
   seconds REAL NOT NULL
 );
 CREATE INDEX build_dataset ON build (dataset);
-PRAGMA user_version = 4;
+PRAGMA user_version = 5;
 )sql";
-static_assert(k_schema_version == 4, "the last line of k_tables states the version too");
+static_assert(k_schema_version == 5, "the last line of k_tables states the version too");
 
 /// From version 1 to 2.
 constexpr const char* k_add_facts = R"sql(
@@ -88,7 +94,16 @@ ALTER TABLE geometry ADD COLUMN damage TEXT NOT NULL DEFAULT '[]';
 constexpr const char* k_add_ctime = R"sql(
 ALTER TABLE input_file ADD COLUMN ctime_ns INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE placed ADD COLUMN ctime_ns INTEGER NOT NULL DEFAULT 0;
-PRAGMA user_version = 4;
+)sql";
+
+/// From version 4 to 5.
+constexpr const char* k_add_sphere = R"sql(
+CREATE TABLE sphere (
+  model TEXT NOT NULL, reader INTEGER NOT NULL,
+  x REAL NOT NULL, y REAL NOT NULL, z REAL NOT NULL, radius REAL NOT NULL,
+  PRIMARY KEY (model, reader)
+) WITHOUT ROWID;
+PRAGMA user_version = 5;
 )sql";
 
 std::int64_t user_version(Connection& connection) {
@@ -116,7 +131,8 @@ void prepare_schema(Connection& connection, const std::string& name) {
   if (version > 0) {
     if (version < 2) connection.execute(k_add_facts);
     if (version < 3) connection.execute(k_add_damage);
-    connection.execute(k_add_ctime);
+    if (version < 4) connection.execute(k_add_ctime);
+    connection.execute(k_add_sphere);
     transaction.commit();
     return;
   }

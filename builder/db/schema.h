@@ -11,9 +11,10 @@ namespace ds {
 ///   3: geometry.damage; rows of older versions are dropped, and their models read once more
 ///   4: ctime_ns in input_file and placed; 0, which no file has, in rows of older versions, so that
 ///      their files are read once more
+///   5: sphere
 /// An older file is converted when it is opened; a newer one is refused, since writing to it could
 /// lose what this program does not know.
-inline constexpr int k_schema_version = 4;
+inline constexpr int k_schema_version = 5;
 
 /// Makes the tables where the file is new. Throws Error(io) for a file of a newer version,
 /// DamagedDatabase for one that is some other program's.

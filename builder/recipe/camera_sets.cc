@@ -41,10 +41,29 @@ std::vector<Vec3d> listed_positions(const Settings& settings) {
   return positions;
 }
 
+bool is_fit(const Settings& settings) {
+  return settings.text("camera.set") != "list" &&
+         settings.literal("camera.distance_m") == "\"fit\"";
+}
+
+std::optional<CameraFit> fit_of(const Settings& settings) {
+  if (!is_fit(settings)) return std::nullopt;
+  // The table's vectors have lengths of their own: there is no one distance to choose.
+  if (settings.text("camera.set") == "half-dodecahedron" && !settings.boolean("camera.normalise"))
+    settings.complain("camera.normalise", "must be true with camera.distance_m = \"fit\"");
+  CameraFit fit;
+  fit.margin = settings.number("camera.fit_margin");
+  const std::string& focus = settings.text("camera.focus");
+  fit.focus = focus == "distance" ? CameraFit::Focus::distance
+              : focus == "target" ? CameraFit::Focus::target
+                                  : CameraFit::Focus::origin;
+  return fit;
+}
+
 std::vector<Vec3d> positions_of(const Settings& settings, Vec3d target) {
   const std::string& set = settings.text("camera.set");
   if (set == "list") return listed_positions(settings);
-  const double distance_m = settings.number("camera.distance_m");
+  const double distance_m = is_fit(settings) ? 1 : settings.number("camera.distance_m");
   if (set == "half-dodecahedron") {
     return offset_by(half_dodecahedron(distance_m, settings.boolean("camera.normalise")), target);
   }
@@ -95,6 +114,7 @@ bool aim(const Settings& settings, const std::string& name, Camera& camera) {
     }
     return true;
   }
+  if (is_fit(settings)) return true;  // the distance is each model's: see fit_camera
   const Vec3d sharp = focus == "target" ? camera.target : Vec3d{};
   camera.focus_distance_m = dot(sharp - camera.position, forward);
   if (camera.focus_distance_m > 0) return true;
@@ -147,6 +167,7 @@ CameraViews make_cameras(const Settings& settings) {
   const Vec3d target = point_of(*settings.find("camera.target"));
   const std::vector<Vec3d> positions = positions_of(settings, target);
   CameraViews views;
+  views.fit = fit_of(settings);
   for (const std::size_t i : chosen_views(settings, positions.size())) {
     Camera camera;
     camera.position = positions[i];

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "builder/recipe/camera_fit.h"
 #include "builder/recipe/settings.h"
 #include "tracer/scene/scene.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,8 @@ namespace ds {
 
 struct CameraViews {
   std::vector<Camera> cameras;
+  /// camera.distance_m = "fit": the cameras stand at 1 m, in the directions of the set.
+  std::optional<CameraFit> fit;
   std::vector<std::string> names;  ///< "0", "1", ... in the set's order; as long as cameras
 };
 

@@ -114,6 +114,12 @@ ImageSpec make_image(const Recipe& recipe, const fs::path& model, std::size_t vi
 
 }  // namespace
 
+void fit_image(ImageSpec& image, const Recipe& recipe, const Sphere& model) {
+  if (!recipe.camera_fit) return;
+  image.camera =
+      fit_camera(image.camera, *recipe.camera_fit, model, image.engine.width, image.engine.height);
+}
+
 std::string material_name(const fs::path& file) {
   return file.stem().string();
 }

@@ -105,8 +105,13 @@ constexpr std::array k_keys = {
     KeySpec{"camera.set", choice, "", "\"half-dodecahedron\"", k_any,
             R"("half-dodecahedron" | "list" | "orbit" | "hemisphere")", "",
             "Where the cameras stand: see Cameras"},
-    KeySpec{"camera.distance_m", number, "m", "0.252", k_distance, "", k_ring_sets,
-            "Distance from camera.target"},
+    KeySpec{"camera.distance_m", number, "m", "0.252", k_distance, "\"fit\"", k_ring_sets,
+            "Distance from camera.target. \"fit\": for each model and view the least at which the "
+            "model's bounding sphere is in the picture: see Cameras"},
+    KeySpec{"camera.fit_margin", number, "", "0.05", between(0, 0.9), "",
+            R"(camera.distance_m = "fit")",
+            "Share of the way from the picture's middle to each edge that stays free around the "
+            "sphere"},
     KeySpec{
         "camera.normalise", boolean, "", "true", k_any, "", R"(camera.set = "half-dodecahedron")",
         "true: every camera at distance_m; false: the table's vectors times distance_m / 1.732"},

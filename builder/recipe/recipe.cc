@@ -5,6 +5,7 @@
 #include "builder/recipe/camera_sets.h"
 #include "builder/recipe/canonical_recipe.h"
 #include "builder/recipe/settings.h"
+#include "manifests/concerns.h"
 #include "tracer/base/files.h"
 
 #include <algorithm>
@@ -142,7 +143,19 @@ void match_labels(const Settings& settings, Recipe& recipe) {
       unlisted.push_back(name);
     }
   }
-  recipe.coverage = {recipe.labels.size(), recipe.labels.size() - used.size(), unlisted.size()};
+  ClassCoverage& coverage = recipe.coverage;
+  coverage.listed = recipe.labels.size();
+  coverage.missing = recipe.labels.size() - used.size();
+  coverage.files = recipe.models.size();
+  coverage.unlisted = unlisted.size();
+  coverage.unlisted_examples.assign(
+      unlisted.begin(), unlisted.begin() + static_cast<std::ptrdiff_t>(
+                                               std::min(unlisted.size(), k_concern_examples)));
+  for (std::size_t i = 0;
+       i < recipe.labels.size() && coverage.missing_examples.size() < k_concern_examples; ++i)
+    if (!used.contains(i)) coverage.missing_examples.push_back(recipe.labels.name(i));
+  coverage.missing_allowed = settings.given("classes.missing");
+  coverage.unlisted_allowed = settings.given("classes.unlisted");
   const std::string& wanted = settings.text("classes.unlisted");
   if (wanted == "error" && !unlisted.empty()) {
     settings.complain(
@@ -254,6 +267,7 @@ Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrid
   CameraViews views = make_cameras(settings);
   recipe.cameras = std::move(views.cameras);
   recipe.view_names = std::move(views.names);
+  recipe.camera_fit = views.fit;
   recipe.engine = read_engine(settings);
   recipe.outputs = read_outputs(settings);
   recipe.rejected_limit = settings.number("engine.rejected_limit");

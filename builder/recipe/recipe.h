@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "builder/recipe/camera_fit.h"
 #include "manifests/classification.h"
 #include "tracer/render/render.h"
 #include "tracer/scene/mesh.h"
@@ -31,7 +32,11 @@ struct OutputSettings {
 struct ClassCoverage {
   std::size_t listed = 0;    ///< models that the class files list
   std::size_t missing = 0;   ///< of these, the ones that have no file
-  std::size_t unlisted = 0;  ///< model files that no class file lists
+  std::size_t files = 0;     ///< model files, where there are class files
+  std::size_t unlisted = 0;  ///< of these, the ones that no class file lists
+  std::vector<std::string> missing_examples, unlisted_examples;  ///< the first few names
+  /// The recipe itself says that they may be, with classes.missing and classes.unlisted.
+  bool missing_allowed = false, unlisted_allowed = false;
 };
 
 /// A recipe read, checked and with every default filled in. Paths are absolute. What each key
@@ -56,7 +61,8 @@ struct Recipe {
   ChoosePer materials_per = ChoosePer::model;
   Assign assign_environments = Assign::cycle;
   ChoosePer environments_per = ChoosePer::view;
-  std::vector<Camera> cameras;          ///< one a view
+  std::vector<Camera> cameras;          ///< one a view; at a distance of 1 m with camera_fit
+  std::optional<CameraFit> camera_fit;  ///< each is moved to where its image's model just fits
   std::vector<std::string> view_names;  ///< "0", "1", ...; as long as cameras
   EngineSettings engine;
   OutputSettings outputs;
@@ -101,6 +107,10 @@ struct ImageSpec {
 /// The id is model/view, and -material and -environment behind it for each that is assigned "all".
 /// Throws Error(recipe) where two images would have one id, or an id's last part a dot.
 std::vector<ImageSpec> expand(const Recipe& recipe);
+
+/// Moves an image's camera to where its model fits, which is that sphere, where the recipe wants
+/// that; else nothing. Throws what `fit_camera` throws.
+void fit_image(ImageSpec& image, const Recipe& recipe, const Sphere& model);
 
 /// The name an image and the manifest use for a material file ("red-plastic") or an environment
 /// folder ("studio").

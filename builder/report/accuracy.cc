@@ -206,8 +206,11 @@ Accuracy measure_accuracy(const Recipe& recipe, Inputs& inputs, SceneTracer& tra
                           const std::atomic<bool>& stop) {
   Accuracy accuracy{recipe.name, tracer.device(), recipe.engine, options, {}};
   if (accuracy.options.most_spp == 0) accuracy.options.most_spp = std::max(16, recipe.engine.spp);
-  const std::vector<PairChoice> pairs = representative_images(expand(recipe));
-  for (const PairChoice& chosen : pairs) {
+  std::vector<PairChoice> pairs = representative_images(expand(recipe));
+  for (PairChoice& chosen : pairs) {
+    if (recipe.camera_fit)
+      fit_image(chosen.image, recipe,
+                inputs.model_sphere(chosen.image.model_file, recipe.normalise));
     told(fmt::format("{} of {}: {} in {}, {}", accuracy.pairs.size() + 1, pairs.size(),
                      chosen.image.material_name, chosen.image.environment_name, chosen.image.id));
     const Subject subject = subject_of(chosen.image, recipe, inputs);

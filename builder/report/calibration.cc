@@ -153,13 +153,31 @@ std::optional<Probe> probe_from_json(const std::string& text) {
   }
 }
 
+namespace {
+
+/// An image whose model cannot be read keeps its camera: it is left out where its key is made.
+void fit_images(std::vector<PairImages>& pairs, const Recipe& recipe, Inputs& inputs) {
+  for (PairImages& pair : pairs)
+    for (ImageSpec& image : pair.images) {
+      try {
+        fit_image(image, recipe, inputs.model_sphere(image.model_file, recipe.normalise));
+      } catch (const DamagedDatabase&) {
+        throw;
+      } catch (const Error&) {
+      }
+    }
+}
+
+}  // namespace
+
 Calibration calibrate(const Recipe& recipe, Inputs& inputs, Renderer& renderer,
                       const CalibrationCache& cache, const CalibrationWish& wish,
                       const std::filesystem::path& scratch, const ProbeWatch& watch) {
   Calibration calibration;
   calibration.device = renderer.device();
   const bool by_error = wish.by_error && recipe.outputs.image;
-  const std::vector<PairImages> wanted = images_to_probe(expand(recipe));
+  std::vector<PairImages> wanted = images_to_probe(expand(recipe));
+  if (recipe.camera_fit) fit_images(wanted, recipe, inputs);
   const std::map<std::string, Hash128> keys =
       probe_keys(recipe, inputs, wanted, calibration.device);
   std::map<std::string, Probe> probes;

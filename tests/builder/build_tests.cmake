@@ -8,3 +8,6 @@ ds_test(build_test
 ds_test(cmd_test
   SOURCES stop_signal_test.cc
   LIBS ds_cmd)
+ds_test(concerns_test
+  SOURCES dataset_concerns_test.cc
+  LIBS ds_build)

@@ -38,6 +38,28 @@ TEST(Database, RemembersAProductAndReplacesIt) {
   EXPECT_EQ(found->facts, product.facts);
 }
 
+TEST(Database, KeepsPixelCountsAndAddsThoseThatWereNotMade) {
+  Database database{std::filesystem::path()};
+  Product product{k_a, "mask", k_b, 17, std::string(64, 'f'), k_a, 1, 0, {}, {}};
+  product.pixel_counts.model = 5;
+  database.put_product(product, {});
+  EXPECT_EQ(database.find_product(k_a)->pixel_counts, product.pixel_counts);
+  database.add_pixel_counts(k_a, {{}, {}, 7, 2});
+  EXPECT_EQ(database.find_product(k_a)->pixel_counts, (PixelCounts{{}, {}, 5, 2}));
+  EXPECT_EQ(database.find_product(k_a)->facts, product.facts);
+  database.add_pixel_counts(k_b, {1, 1, 1, 1});  // nobody's
+  EXPECT_FALSE(database.find_product(k_b));
+}
+
+TEST(Database, KeepsSpheresByModelAndReader) {
+  Database database{std::filesystem::path()};
+  EXPECT_FALSE(database.find_sphere(k_a, 1));
+  database.put_sphere(k_a, 1, {0.1, -0.2, 0.3, 1.0 / 3});
+  EXPECT_EQ(database.find_sphere(k_a, 1), (std::array{0.1, -0.2, 0.3, 1.0 / 3}));
+  EXPECT_FALSE(database.find_sphere(k_a, 2));
+  EXPECT_FALSE(database.find_sphere(k_b, 1));
+}
+
 TEST(Database, KnowsAFileByEveryPartOfItsStamp) {
   Database database({});
   const FileStamp stamp{10, 20, 25, 30};
@@ -128,7 +150,7 @@ TEST(Database, ReadsAFileOfVersionOne) {
         "ALTER TABLE product DROP COLUMN facts; "
         "ALTER TABLE geometry DROP COLUMN damage; "
         "ALTER TABLE input_file DROP COLUMN ctime_ns; "
-        "ALTER TABLE placed DROP COLUMN ctime_ns; PRAGMA user_version = 1");
+        "ALTER TABLE placed DROP COLUMN ctime_ns; DROP TABLE sphere; PRAGMA user_version = 1");
   }
   for (int opened = 0; opened < 2; ++opened) {
     Database database(file);
@@ -152,7 +174,7 @@ TEST(Database, ForgetsModelsOfVersionTwoWhoseDamageIsNotKnown) {
   Connection(file).execute(
       "ALTER TABLE geometry DROP COLUMN damage; "
       "ALTER TABLE input_file DROP COLUMN ctime_ns; "
-      "ALTER TABLE placed DROP COLUMN ctime_ns; PRAGMA user_version = 2");
+      "ALTER TABLE placed DROP COLUMN ctime_ns; DROP TABLE sphere; PRAGMA user_version = 2");
   Database database(file);
   EXPECT_FALSE(database.find_model(k_a, 1));
   EXPECT_TRUE(database.find_product(k_a));
@@ -171,7 +193,7 @@ TEST(Database, TrustsNoStampOfVersionThreeWhichHadNoCtime) {
   }
   Connection(file).execute(
       "ALTER TABLE input_file DROP COLUMN ctime_ns; "
-      "ALTER TABLE placed DROP COLUMN ctime_ns; PRAGMA user_version = 3");
+      "ALTER TABLE placed DROP COLUMN ctime_ns; DROP TABLE sphere; PRAGMA user_version = 3");
   Database database(file);
   EXPECT_FALSE(database.find_content("/a/file", stamp));
   EXPECT_NE(database.placed_files("one").at("images/a/0.png").stamp, stamp);

@@ -53,6 +53,7 @@ class ManifestTest : public testing::Test {
       image.tone_map_scale = 1.0 / 3;
       image.relative_error = 0.0625;
       image.rejected_samples = 3;
+      image.pixel_counts = {30'000, 17, 4000, {}};
       image.film.samples = 256 * 128 * 64;
       image.film.least_spp = image.film.most_spp = 64;
       image.film.negative_samples = 3;
@@ -102,6 +103,7 @@ TEST_F(ManifestTest, ReadsBackWhatWasWritten) {
     EXPECT_EQ(images[i].tone_map_scale, 1.0 / 3);
     EXPECT_EQ(images[i].relative_error, 0.0625);
     EXPECT_EQ(images[i].film, images_[i].film);
+    EXPECT_EQ(images[i].pixel_counts, images_[i].pixel_counts);
     EXPECT_EQ(images[i].intrinsics, images_[i].intrinsics);
     EXPECT_EQ(images[i].camera_to_world, images_[i].camera_to_world);
     EXPECT_EQ(images[i].parts, images_[i].parts);
@@ -236,7 +238,9 @@ TEST_F(ManifestTest, RefusesWhatNoManifestCanSay) {
 TEST_F(ManifestTest, ReadsLinesOfBeforeTheFilmsFacts) {
   nlohmann::json line = nlohmann::json::parse(to_json_line(images_[0]));
   line.erase("film");
+  line.erase("pixel_counts");
   EXPECT_EQ(image_from_json_line(line.dump(), "images.jsonl", 1).film, FilmFacts{});
+  EXPECT_EQ(image_from_json_line(line.dump(), "images.jsonl", 1).pixel_counts, PixelCounts{});
 }
 
 TEST_F(ManifestTest, NamesLineAndFieldOfEveryDamage) {

@@ -133,6 +133,18 @@ Picture develop(const Film& film, const ToneMap& tone_map) {
   return picture;
 }
 
+std::uint64_t clipped_pixels(const Film& film, const ToneMap& tone_map) {
+  constexpr double k_clipped = 1.05;
+  const double scale = tone_map_scale(film, tone_map);
+  std::uint64_t clipped = 0;
+  for (std::size_t i = 0; i < pixel_count(film); ++i) {
+    const float* rgb = film.rgb.data() + i * 3;
+    const double least = std::min({double{rgb[0]}, double{rgb[1]}, double{rgb[2]}});
+    clipped += least * pixel_factor(rgb, tone_map, scale) > k_clipped ? 1U : 0U;
+  }
+  return clipped;
+}
+
 Picture mask_picture(const Geometry& geometry) {
   Picture picture{geometry.width, geometry.height, 1, geometry.mask};
   for (std::uint8_t& value : picture.pixels)

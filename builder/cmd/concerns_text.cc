@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/cmd/concerns_text.h"
+
+#include "tracer/base/error.h"
+#include "tracer/base/log.h"
+#include "tracer/base/streams.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace ds {
+namespace {
+
+struct ConcernText {
+  const char* name;
+  const char* text;  ///< behind "2 of 8 "
+};
+constexpr ConcernText k_texts[] = {
+    {"mask_empty", "images show nothing of their model, the mask is empty"},
+    {"mask_at_frame", "images cut their model off, the mask touches the frame"},
+    {"mask_small", "images show their model on less than 1 % of the picture"},
+    {"picture_black", "pictures are black"},
+    {"picture_white", "pictures are clipped at white on more than a quarter"},
+    {"models_absent", "models that the class files list have no file"},
+    {"models_unlisted", "model files stand in no class file"},
+    {"classes_empty", "classes have no image"},
+};
+
+bool is_allowed(const Concern& concern, const ClassCoverage& coverage) {
+  return (concern.name == "models_absent" && coverage.missing_allowed) ||
+         (concern.name == "models_unlisted" && coverage.unlisted_allowed);
+}
+
+}  // namespace
+
+std::string to_text(const Concern& concern) {
+  const auto* const at = std::find_if(std::begin(k_texts), std::end(k_texts),
+                                      [&](const auto& one) { return one.name == concern.name; });
+  DS_ASSERT(at != std::end(k_texts));
+  std::string text = fmt::format("{} of {} {}: {}", concern.count, concern.of, at->text,
+                                 fmt::join(concern.examples, ", "));
+  if (concern.count > concern.examples.size())
+    text += fmt::format(" and {} more", concern.count - concern.examples.size());
+  return text;
+}
+
+nlohmann::json to_json(const std::vector<Concern>& concerns) {
+  nlohmann::json object = nlohmann::json::object();
+  for (const Concern& concern : concerns)
+    object[concern.name] = concern.count;
+  return object;
+}
+
+std::size_t tell_concerns(const std::vector<Concern>& concerns, const Recipe& recipe, bool strict) {
+  std::size_t errors = 0;
+  for (const Concern& concern : concerns) {
+    if (concern.count == 0) continue;
+    if (is_allowed(concern, recipe.coverage)) {
+      say(Stream::people, "{}\n", to_text(concern));
+    } else if (strict) {
+      ++errors;
+      say(Stream::people, "dsbuild: error: {} (--strict)\n", to_text(concern));
+    } else {
+      warn(to_text(concern));
+    }
+  }
+  return errors;
+}
+
+}  // namespace ds

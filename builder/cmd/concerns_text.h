@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/recipe/recipe.h"
+#include "manifests/concerns.h"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+namespace ds {
+
+/// "2 of 8 images show nothing of their model: a.off/0, a.off/1".
+std::string to_text(const Concern& concern);
+
+/// A count by name, of every kind.
+nlohmann::json to_json(const std::vector<Concern>& concerns);
+
+/// Tells those that there are: as warnings, or as errors where they are to be (`strict`); what the
+/// recipe itself allows (classes.missing, classes.unlisted) as plain lines. Returns how many were
+/// told as errors.
+std::size_t tell_concerns(const std::vector<Concern>& concerns, const Recipe& recipe, bool strict);
+
+}  // namespace ds

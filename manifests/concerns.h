@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ds {
+
+/// What makes a dataset less than it seems to be, though every file of it is as wanted.
+///   mask_empty       images whose mask shows nothing of the model
+///   mask_at_frame    images whose mask has a pixel in the first or last row or column
+///   mask_small       images whose mask has some pixels, but under 1 % of all
+///   picture_black    pictures of which under 1 in 1000 pixels has a channel above 4 of 255
+///   picture_white    pictures of which over a quarter of the pixels are clipped in every channel
+///   models_absent    models that the class files list and that have no file
+///   models_unlisted  model files that no class file lists, where there is one
+///   classes_empty    classes of the class files, and classes above them, that no image is of
+struct Concern {
+  std::string name;
+  std::uint64_t count = 0;            ///< 0: none
+  std::uint64_t of = 0;               ///< images with a mask, pictures, models listed, ...
+  std::vector<std::string> examples;  ///< the first few: ids of images, names
+
+  bool operator==(const Concern&) const = default;
+};
+
+/// How many examples are kept of each.
+inline constexpr std::size_t k_concern_examples = 3;
+
+/// "mask_empty" and so on with counts of 0, in the order above.
+std::vector<Concern> no_concerns();
+/// One of them by its name, which must be in the list.
+Concern& concern(std::vector<Concern>& concerns, const char* name);
+/// Counts one more.
+void add_example(Concern& concern, const std::string& example);
+
+}  // namespace ds

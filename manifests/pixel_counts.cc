@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "manifests/pixel_counts.h"
+
+#include "tracer/base/error.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace ds {
+namespace {
+
+using nlohmann::json;
+
+/// Of 255: what is not above is black to people, on any screen, and a tone map's rounding.
+constexpr std::uint8_t k_black = 4;
+
+struct Field {
+  const char* name;
+  std::optional<std::uint64_t> PixelCounts::*count;
+};
+constexpr Field k_fields[] = {{"lit", &PixelCounts::lit},
+                              {"white", &PixelCounts::white},
+                              {"model", &PixelCounts::model},
+                              {"frame", &PixelCounts::frame}};
+
+}  // namespace
+
+PixelCounts count_picture(std::span<const std::uint8_t> samples, int channels) {
+  std::uint64_t lit = 0;
+  const auto step = static_cast<std::size_t>(channels);
+  for (std::size_t at = 0; at + step <= samples.size(); at += step) {
+    const auto pixel = samples.subspan(at, step);
+    lit += *std::max_element(pixel.begin(), pixel.end()) > k_black ? 1U : 0U;
+  }
+  return {lit, {}, {}, {}};
+}
+
+PixelCounts count_mask(std::span<const std::uint8_t> samples, int width, int height) {
+  DS_ASSERT(samples.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  std::uint64_t model = 0, frame = 0;
+  std::size_t at = 0;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x, ++at) {
+      if (samples[at] == 0) continue;
+      ++model;
+      frame += x == 0 || y == 0 || x == width - 1 || y == height - 1 ? 1U : 0U;
+    }
+  }
+  return {{}, {}, model, frame};
+}
+
+void add_counts(PixelCounts& to, const PixelCounts& from) {
+  for (const Field& field : k_fields)
+    if (!(to.*field.count)) to.*field.count = from.*field.count;
+}
+
+json to_json_value(const PixelCounts& counts) {
+  json object = json::object();
+  for (const Field& field : k_fields)
+    if (counts.*field.count) object[field.name] = *(counts.*field.count);
+  return object;
+}
+
+PixelCounts pixel_counts_from(const json& object) {
+  if (!object.is_object())
+    fail(ErrorKind::asset, "pixel_counts must be an object, got {}", object.type_name());
+  PixelCounts counts;
+  for (const Field& field : k_fields) {
+    const auto at = object.find(field.name);
+    if (at == object.end()) continue;
+    if (!at->is_number_unsigned())
+      fail(ErrorKind::asset, "pixel_counts.{} must be a count, got {}", field.name,
+           at->dump(-1, ' ', false, json::error_handler_t::replace));
+    counts.*field.count = at->get<std::uint64_t>();
+  }
+  return counts;
+}
+
+}  // namespace ds

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace ds {
+
+/// What of an image's picture and mask tells that they are of no use, in pixels. Counts that nobody
+/// made are absent: of an image without a mask, or in the records of an older dsbuild.
+struct PixelCounts {
+  std::optional<std::uint64_t> lit;  ///< of the picture: some channel is above 4 of 255
+  std::optional<std::uint64_t>
+      white;  ///< of the picture: clipped in every channel (clipped_pixels)
+  std::optional<std::uint64_t> model;  ///< of the mask: the model is seen
+  std::optional<std::uint64_t> frame;  ///< of those, in the first or last row or column
+
+  bool operator==(const PixelCounts&) const = default;
+};
+
+/// `lit` of 8 bit samples, interleaved. Whether a white pixel is clipped they do not tell.
+PixelCounts count_picture(std::span<const std::uint8_t> samples, int channels);
+/// `model` and `frame` of a mask, one sample a pixel, 0 where the model is not seen.
+PixelCounts count_mask(std::span<const std::uint8_t> samples, int width, int height);
+/// Those of `to` that are absent, taken from the other.
+void add_counts(PixelCounts& to, const PixelCounts& from);
+
+/// An object of the counts that are there, by name.
+nlohmann::json to_json_value(const PixelCounts& counts);
+/// Throws Error(asset) with the field's name for what is no count.
+PixelCounts pixel_counts_from(const nlohmann::json& object);
+
+}  // namespace ds

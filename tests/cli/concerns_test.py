@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Datasets that are of no use are said to be so; cameras that fit leave no model cut off."""
+import json
+import struct
+import zlib
+
+from harness import IMAGES, TinyCase, main
+
+NONE = {name: 0 for name in ("mask_empty", "mask_at_frame", "mask_small", "picture_black", "picture_white",
+                             "models_absent", "models_unlisted", "classes_empty")}
+
+
+def grey_png(path):
+    """Rows of an 8 bit grey PNG, by the format's definition."""
+    data = path.read_bytes()
+    width, height, depth, colour = struct.unpack(">IIBB", data[16:26])
+    assert (depth, colour) == (8, 0), (depth, colour)
+    packed, at = b"", 8
+    while at < len(data):
+        size, kind = struct.unpack(">I4s", data[at:at + 8])
+        if kind == b"IDAT":
+            packed += data[at + 8:at + 8 + size]
+        at += size + 12
+    raw = zlib.decompress(packed)
+    rows, above = [], bytes(width)
+    for y in range(height):
+        kind, line = raw[y * (width + 1)], raw[y * (width + 1) + 1:(y + 1) * (width + 1)]
+        row = bytearray()
+        for x, value in enumerate(line):
+            left, up = (row[x - 1] if x else 0), above[x]
+            corner = above[x - 1] if x else 0
+            paeth = min((left, up, corner), key=lambda one: abs(left + up - corner - one))
+            row.append((value + (0, left, up, (left + up) // 2, paeth)[kind]) % 256)
+        rows.append(bytes(row))
+        above = rows[-1]
+    return rows
+
+
+class ConcernsTest(TinyCase):
+    def concerns(self, *arguments, code=0):
+        run = self.run_it("build", self.recipe, "-o", self.out, "--json", *arguments)
+        self.assertEqual(run.code, code, run)
+        described = json.loads((self.out / "manifest/dataset.json").read_text())["concerns"]
+        self.assertEqual({name: one["count"] for name, one in described.items()}, run.json["concerns"])
+        return run.json["concerns"], run.err
+
+    def test_a_good_dataset_is_not_talked_about(self):
+        concerns, err = self.concerns("--strict")
+        self.assertEqual(concerns, NONE)
+        self.assertNotIn("dsbuild:", err)
+
+    def test_cameras_that_see_nothing(self):
+        far = ["--set", "camera.distance_m=1000"]
+        concerns, err = self.concerns(*far)
+        self.assertEqual(concerns["mask_empty"], IMAGES)
+        self.assertIn(f"dsbuild: warning: {IMAGES} of {IMAGES} images show nothing of their model", err)
+        # A build that reuses everything says the same.
+        again, err_again = self.concerns(*far)
+        self.assertEqual(again, concerns)
+        self.assertIn("images show nothing of their model", err_again)
+        # With --strict it is an error, though all is made.
+        _, strict = self.concerns(*far, "--strict", code=1)
+        self.assertIn("dsbuild: error: ", strict)
+        self.assertEqual(self.run_it("verify", self.out).code, 0)
+
+    def test_cameras_that_cut_off(self):
+        concerns, err = self.concerns("--set", "camera.distance_m=0.15")
+        touched = 0
+        for path in self.out.glob("images/*/*.mask.png"):
+            rows = grey_png(path)
+            edge = rows[0] + rows[-1] + bytes(row[0] for row in rows) + bytes(row[-1] for row in rows)
+            touched += any(edge)
+        self.assertGreater(touched, 0)
+        self.assertEqual(concerns["mask_at_frame"], touched)
+        self.assertIn("the mask touches the frame", err)
+
+    def test_rooms_without_light(self):
+        for path in self.tiny.glob("environments/*/environment.scn"):
+            lines = [line for line in path.read_text().splitlines() if not line.startswith("scene.lights")]
+            path.write_text("\n".join(lines) + "\n")
+        concerns, err = self.concerns()
+        self.assertEqual(concerns["picture_black"], IMAGES)
+        self.assertIn("pictures are black", err)
+
+    def test_pictures_that_are_all_white(self):
+        concerns, err = self.concerns("--set", "outputs.tone_map=linear", "--set", "outputs.tone_map_scale=1000")
+        self.assertEqual(concerns["picture_white"], IMAGES)
+        self.assertIn("pictures are clipped at white", err)
+
+    def test_classes_that_do_not_fit_the_files(self):
+        (self.tiny / "train.cla").write_text("PSB 1\n3 4\n\nthing 0 0\n\nbox thing 2\nbox\ngone\n\nship 0 2\nfar\nlost\n")
+        self.edit("recipe.toml", "[materials]", '[classes]\ntrain = "train.cla"\n\n[materials]')
+        concerns, err = self.concerns()
+        self.assertEqual(concerns, {**NONE, "models_absent": 3, "models_unlisted": 1, "classes_empty": 1})
+        self.assertIn("3 of 4 models that the class files list have no file: far, gone, lost", err)
+        self.assertIn("1 of 2 model files stand in no class file: tetra.ply", err)
+        self.assertIn("1 of 3 classes have no image: ship", err)
+        self.concerns("--strict", code=1)
+        # What the recipe itself allows is said, and no error.
+        allowed = ["--set", "classes.missing=ignore", "--set", "classes.unlisted=skip"]
+        _, err = self.concerns(*allowed)
+        self.assertNotIn("warning: 3 of 4", err)
+        self.assertIn("3 of 4 models", err)
+
+    def test_cameras_that_fit_cut_nothing_off(self):
+        wedge = self.tiny / "models/wedge.off"  # off its middle, and of another shape
+        wedge.write_text("OFF\n4 4 0\n0 0 0\n9 0 0\n9 0 5\n2 4 1\n3 0 1 2\n3 0 3 1\n3 1 3 2\n3 2 3 0\n")
+        fit = ["--set", "camera.distance_m=fit", "--set", "camera.set=half-dodecahedron", "--set", "engine.width=48"]
+        concerns, err = self.concerns(*fit, "--strict")
+        self.assertEqual(concerns, NONE, err)
+        lines = [json.loads(line) for line in (self.out / "manifest/images.jsonl").read_text().splitlines()]
+        self.assertEqual(len(lines), 3 * 14)
+        for line in lines:
+            rows = grey_png(self.out / f"images/{line['id']}.mask.png")
+            self.assertFalse(any(rows[0] + rows[-1]), line["id"])
+            self.assertFalse(any(row[0] or row[-1] for row in rows), line["id"])
+        # Nothing is stale, and a model that moves in its file moves nobody's camera.
+        self.assert_counts(self.build(*fit), traced=0)
+        wedge.write_text(wedge.read_text().replace("9 0 5", "9 1 5"))
+        self.assert_counts(self.build(*fit), traced=14)
+
+    def test_fit_wants_one_distance(self):
+        run = self.run_it("plan", self.recipe, "--set", "camera.set=half-dodecahedron", "--set",
+                          "camera.distance_m=fit", "--set", "camera.normalise=false")
+        self.assertEqual(run.code, 2, run)
+        self.assertIn('must be true with camera.distance_m = "fit"', run.err)
+        run = self.run_it("plan", self.recipe, "--set", "camera.fit_margin=0.1")
+        self.assertEqual(run.code, 2, run)
+
+
+if __name__ == "__main__":
+    main()
