@@ -17,6 +17,9 @@ void check_mesh(const BasicMesh<Position>& mesh) {
   DS_ASSERT(!mesh.triangles.empty());
   DS_ASSERT(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
   DS_ASSERT(mesh.uvs.empty() || mesh.uvs.size() == mesh.positions.size());
+  DS_ASSERT(mesh.colors.empty() || mesh.colors.size() == mesh.positions.size());
+  for (const ds::MeshColor& c : mesh.colors)
+    DS_ASSERT(c[0] >= 0 && c[1] >= 0 && c[2] >= 0 && std::isfinite(c[3]));
   for (const auto& t : mesh.triangles)
     for (const std::uint32_t v : t)
       DS_ASSERT(v < mesh.positions.size());

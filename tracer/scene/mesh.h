@@ -14,7 +14,10 @@
 
 namespace ds {
 
-/// An indexed triangle mesh. `normals` and `uvs` are empty or as long as `positions`. Positions are
+/// Red, green, blue and alpha, from 0 to 1 and linear, as LuxCore takes them.
+using MeshColor = std::array<float, 4>;
+
+/// An indexed triangle mesh. `normals`, `uvs` and `colors` are empty or as long as `positions`. Positions are
 /// finite; every index is below positions.size(). Counter-clockwise seen from outside, where the
 /// source says so.
 template <typename Position>
@@ -22,6 +25,7 @@ struct BasicMesh {
   std::vector<Position> positions;
   std::vector<Vec3> normals;  ///< unit length, or zero where none can be told
   std::vector<Vec2> uvs;
+  std::vector<MeshColor> colors;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
@@ -54,7 +58,7 @@ struct MeshReport {
   std::uint64_t non_finite = 0;  ///< vertices with a NaN, infinite or too far coordinate, removed
                                  ///< with all their faces
   std::uint64_t bad_attributes =
-      0;  ///< kept vertices whose normal or uv is not finite; that is set to 0
+      0;  ///< kept vertices whose normal, uv or colour is not finite; that is set to 0
   std::uint64_t zero_area = 0;        ///< triangles removed: no area
   std::uint64_t duplicate_faces = 0;  ///< triangles removed: the same three corner positions as an
                                       ///< earlier one, whatever the order
@@ -65,8 +69,10 @@ struct MeshReport {
   std::uint64_t against = 0;  ///< kept triangles of open surfaces wound against the majority of
                               ///< theirs; reported, not changed
   std::uint64_t triangles_kept = 0;
+  std::uint64_t trailing_bytes = 0;  ///< behind what the header promises, not read
   bool has_normals = false;
   bool has_uvs = false;
+  bool has_colors = false;
 };
 
 /// The counts of MeshReport with their names, in the order a table should have them. `damage`: what
@@ -90,7 +96,7 @@ inline constexpr std::array k_mesh_report_columns{
     MeshReportColumn{"non_finite", &MeshReport::non_finite,
                      "vertices not finite or beyond 1e18 removed with their faces"},
     MeshReportColumn{"bad_attributes", &MeshReport::bad_attributes,
-                     "normals or uvs not finite set to 0"},
+                     "normals, uvs or colours not finite set to 0"},
     MeshReportColumn{"zero_area", &MeshReport::zero_area},
     MeshReportColumn{"duplicate_faces", &MeshReport::duplicate_faces},
     MeshReportColumn{"unreferenced", &MeshReport::unreferenced},
@@ -98,6 +104,8 @@ inline constexpr std::array k_mesh_report_columns{
                      "triangles of closed surfaces turned to face outwards"},
     MeshReportColumn{"against", &MeshReport::against},
     MeshReportColumn{"triangles_kept", &MeshReport::triangles_kept},
+    MeshReportColumn{"trailing_bytes", &MeshReport::trailing_bytes,
+                     "bytes behind what the header promises not read"},
 };
 
 /// Damage that reading mended, by name and count, in the order of the columns; empty for a whole
@@ -155,12 +163,12 @@ struct NormaliseOptions {
 /// Normals: `smooth` weights by area times corner angle, joins vertices of equal position, and
 /// splits a vertex where faces meet at more than crease_deg or where neighbours are wound against
 /// each other; `flat` gives each triangle its own; `keep` turns the stored ones and throws
-/// Error(asset) where the mesh has none. uvs are kept by all three. Triangles keep their order and
+/// Error(asset) where the mesh has none. uvs and colours are kept by all three. Triangles keep their order and
 /// corners.
 Mesh normalise(const FileMesh& mesh, const NormaliseOptions& options);
 
-/// Hash of positions, normals, uvs and triangles, bit by bit and in order: what a re-saved file
-/// keeps. Files of one geometry in different formats, headers, comments or spellings of equal
+/// Hash of positions, normals, uvs, triangles and, where there are any, colours, bit by bit and in
+/// order: what a re-saved file keeps. Files of one geometry in different formats, headers, comments or spellings of equal
 /// numbers have the same hash once read.
 Hash128 geometry_hash(const Mesh& mesh);
 /// The same hash where all positions are floats' values.

@@ -28,6 +28,7 @@ Hash128 hash_of(const char* name, const std::vector<Position>& positions, const 
   add_array(text, "normals", mesh.normals);
   add_array(text, "uvs", mesh.uvs);
   add_array(text, "triangles", mesh.triangles);
+  if (!mesh.colors.empty()) add_array(text, "colors", mesh.colors);
   return hash_text(text);
 }
 

@@ -21,6 +21,9 @@ constexpr std::uint64_t k_most_vertices = std::uint64_t{1} << 30U;
 bool is_finite(Vec3 v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
+bool is_finite(const MeshColor& c) {
+  return std::all_of(c.begin(), c.end(), [](float x) { return std::isfinite(x); });
+}
 bool is_finite(Vec2 v) {
   return std::isfinite(v.x) && std::isfinite(v.y);
 }
@@ -145,6 +148,10 @@ void mend_attributes(FileMesh& mesh, MeshReport& report) {
       bad = true;
       mesh.uvs[v] = {};
     }
+    if (!mesh.colors.empty() && !is_finite(mesh.colors[v])) {
+      bad = true;
+      mesh.colors[v] = {};
+    }
     if (bad) ++report.bad_attributes;
   }
 }
@@ -163,12 +170,14 @@ void drop_unreferenced(FileMesh& mesh, MeshReport& report) {
     mesh.positions[kept] = mesh.positions[v];
     if (!mesh.normals.empty()) mesh.normals[kept] = mesh.normals[v];
     if (!mesh.uvs.empty()) mesh.uvs[kept] = mesh.uvs[v];
+    if (!mesh.colors.empty()) mesh.colors[kept] = mesh.colors[v];
     ++kept;
   }
   report.unreferenced = used.size() - kept;
   mesh.positions.resize(kept);
   if (!mesh.normals.empty()) mesh.normals.resize(kept);
   if (!mesh.uvs.empty()) mesh.uvs.resize(kept);
+  if (!mesh.colors.empty()) mesh.colors.resize(kept);
   for (Triangle& t : mesh.triangles)
     for (std::uint32_t& v : t)
       v = renumbered[v];
@@ -200,6 +209,8 @@ Model mend(Polygons polygons, const std::string& name, Winding winding) {
   Model model;
   MeshReport& report = model.report;
   count_faces(polygons, report);
+  report.trailing_bytes = polygons.trailing_bytes;
+  split_corners(polygons);
   if (report.vertices > k_most_vertices || report.triangles > k_most_triangles)
     fail(ErrorKind::asset, "{}: at most {} vertices and {} triangles can be used, got {} and {}",
          name, k_most_vertices, k_most_triangles, report.vertices, report.triangles);
@@ -213,6 +224,13 @@ Model mend(Polygons polygons, const std::string& name, Winding winding) {
   mesh.positions = std::move(polygons.positions);
   mesh.normals = std::move(polygons.normals);
   mesh.uvs = std::move(polygons.uvs);
+  mesh.colors = std::move(polygons.colors);
+  report.has_colors = !mesh.colors.empty();
+  // White is what a mesh without colours has: the same mesh.
+  constexpr MeshColor k_white{1, 1, 1, 1};
+  if (std::all_of(mesh.colors.begin(), mesh.colors.end(),
+                  [&](const MeshColor& c) { return c == k_white; }))
+    mesh.colors.clear();
   const std::vector<Triangle> flat = remove_zero_area(mesh.triangles, mesh.positions, report);
   const std::vector<std::uint32_t> welded = weld(mesh.positions);
   remove_duplicates(mesh.triangles, welded, report);
@@ -247,6 +265,7 @@ Mesh in_floats(FileMesh mesh) {
     rounded.positions.push_back(to_mesh_floats(p));
   rounded.normals = std::move(mesh.normals);
   rounded.uvs = std::move(mesh.uvs);
+  rounded.colors = std::move(mesh.colors);
   rounded.triangles = std::move(mesh.triangles);
   return rounded;
 }

@@ -108,7 +108,17 @@ void check_digits(const std::vector<Vec3>& placed) {
        size, farthest);
 }
 
-/// The mesh with one normal a corner. Corners that agree in place, normal and uv share a vertex;
+/// For each vertex a number of its colour: equal ones have one.
+std::vector<std::uint32_t> color_numbers(const std::vector<MeshColor>& colors) {
+  std::vector<std::array<std::uint32_t, 4>> keys;
+  for (const MeshColor& c : colors)
+    keys.push_back({std::bit_cast<std::uint32_t>(c[0]), std::bit_cast<std::uint32_t>(c[1]),
+                    std::bit_cast<std::uint32_t>(c[2]), std::bit_cast<std::uint32_t>(c[3])});
+  return first_equal<4>(keys);
+}
+
+/// The mesh with one normal a corner. Corners that agree in place, normal, uv and colour share a
+/// vertex;
 /// vertices are in the order in which triangles first use them.
 Mesh with_corner_normals(const FileMesh& source, const std::vector<Vec3>& placed,
                          const std::vector<std::uint32_t>& welded,
@@ -116,15 +126,17 @@ Mesh with_corner_normals(const FileMesh& source, const std::vector<Vec3>& placed
   const bool has_uvs = !source.uvs.empty();
   const std::size_t corners = 3 * source.triangles.size();
   const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
-  std::vector<std::array<std::uint32_t, 6>> keys;
+  const std::vector<std::uint32_t> colors = color_numbers(source.colors);
+  std::vector<std::array<std::uint32_t, 7>> keys;
   keys.reserve(corners);
   for (std::size_t c = 0; c < corners; ++c) {
     const std::uint32_t v = source.triangles[c / 3][c % 3];
     const Vec3 n = rounded(corner_normals[c]);
     const Vec2 uv = has_uvs ? source.uvs[v] : Vec2{};
-    keys.push_back({welded[v], bits(n.x), bits(n.y), bits(n.z), bits(uv.x), bits(uv.y)});
+    keys.push_back({welded[v], bits(n.x), bits(n.y), bits(n.z), bits(uv.x), bits(uv.y),
+                    colors.empty() ? 0 : colors[v]});
   }
-  const std::vector<std::uint32_t> first = first_equal<6>(keys);
+  const std::vector<std::uint32_t> first = first_equal<7>(keys);
 
   Mesh mesh;
   mesh.triangles.resize(source.triangles.size());
@@ -136,6 +148,7 @@ Mesh with_corner_normals(const FileMesh& source, const std::vector<Vec3>& placed
       mesh.positions.push_back(placed[v]);
       mesh.normals.push_back(rounded(corner_normals[c]));
       if (has_uvs) mesh.uvs.push_back(source.uvs[v]);
+      if (!colors.empty()) mesh.colors.push_back(source.colors[v]);
     }
     mesh.triangles[c / 3][c % 3] = vertex_of[first[c]];
   }
@@ -151,6 +164,7 @@ Mesh with_stored_normals(const FileMesh& source, std::vector<Vec3> placed, UpAxi
   for (const Vec3 n : source.normals)
     mesh.normals.push_back(rounded(turned(to_double(n), up)));
   mesh.uvs = source.uvs;
+  mesh.colors = source.colors;
   mesh.triangles = source.triangles;
   return mesh;
 }

@@ -14,14 +14,19 @@
 namespace ds {
 
 /// A model as a reader finds it: polygons of any size, nothing checked or mended. Indices that are
-/// not in [0, 2^32 - 1) are 2^32 - 1; any may be at or above the vertex count. `normals` and `uvs`
-/// are empty or as long as `positions`. No -0.
+/// not in [0, 2^32 - 1) are 2^32 - 1; any may be at or above the vertex count. `normals`,
+/// `uvs` and `colors` are empty or as long as `positions`. No -0. Colours are as the file has them
+/// until `unit_colors`; an alpha below 0 says that there is none.
 struct Polygons {
   std::vector<Vec3d> positions;
   std::vector<Vec3> normals;
   std::vector<Vec2> uvs;
+  std::vector<MeshColor> colors;
   std::vector<std::uint32_t> corners;  ///< vertex indices of all faces, one face after another
   std::vector<std::size_t> face_ends;  ///< where in `corners` each face ends
+  std::vector<Vec2> corner_uvs;        ///< empty or as long as `corners`; goes before `uvs`
+  std::vector<MeshColor> face_colors;  ///< empty or one a face; where there are no `colors`
+  std::size_t trailing_bytes = 0;      ///< behind what the header promises
 
   std::span<const std::uint32_t> face(std::size_t i) const {
     const std::size_t begin = i == 0 ? 0 : face_ends[i - 1];
@@ -39,6 +44,15 @@ bool is_off(std::string_view bytes);
 
 /// Triangulates, and mends what MeshReport lists. Throws Error(asset) where no triangle is left.
 Model mend(Polygons polygons, const std::string& name, Winding winding);
+
+/// Colours of a file whose type does not tell their range: some value above 1 says that they run to
+/// 255, alpha by its own. An alpha that is not there becomes 1.
+void unit_colors(std::vector<MeshColor>& colors);
+
+/// Gives each corner that has a uv or a colour of its own a vertex of its own, so that both stand at
+/// vertices; corners that agree share one. A vertex stays in its place for the first of its corners; those of
+/// further ones follow behind all. Leaves polygons without either as they are.
+void split_corners(Polygons& polygons);
 
 /// A double from a file as the float a mesh holds: too large becomes infinite, -0 becomes 0.
 float to_mesh_float(double value);

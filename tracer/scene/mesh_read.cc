@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
+#include "tracer/base/text_lines.h"
 #include "tracer/scene/mesh.h"
 #include "tracer/scene/mesh_polygons.h"
 #include "tracer/scene/mesh_text.h"
@@ -8,6 +9,8 @@
 namespace ds {
 
 Model parse_model(std::string_view bytes, const std::string& name, Winding winding) {
+  if (is_utf16(bytes)) fail(ErrorKind::asset, "{}: {}", name, k_utf16_message);
+  bytes = without_bom(bytes);
   if (is_ply(bytes)) return mend(read_ply(bytes, name), name, winding);
   if (is_off(bytes)) return mend(read_off(bytes, name), name, winding);
   if (bytes.empty())

@@ -48,6 +48,13 @@ class LineCursor {
     return true;
   }
 
+  /// Goes on to the next line that holds something where the current one is done; false at the end
+  /// of the text.
+  bool next_word() {
+    if (!on_line_) return next_line();
+    return !line_done() || next_line();
+  }
+
   /// Whether the current line holds nothing further.
   bool line_done() {
     while (at_ != end_ && (*at_ == ' ' || *at_ == '\t'))
@@ -79,6 +86,8 @@ class LineCursor {
   bool rest_starts_with(std::string_view text) const {
     return std::string_view(at_, bytes_left()).starts_with(text);
   }
+  /// What is left of the text.
+  std::string_view rest() const { return {at_, bytes_left()}; }
   std::size_t bytes_left() const { return static_cast<std::size_t>(end_ - at_); }
   std::uint64_t line() const { return line_; }
 

@@ -42,7 +42,9 @@ std::vector<std::uint32_t> first_equal(std::span<const std::array<std::uint32_t,
   return first;
 }
 template std::vector<std::uint32_t> first_equal(std::span<const std::array<std::uint32_t, 3>>);
+template std::vector<std::uint32_t> first_equal(std::span<const std::array<std::uint32_t, 4>>);
 template std::vector<std::uint32_t> first_equal(std::span<const std::array<std::uint32_t, 6>>);
+template std::vector<std::uint32_t> first_equal(std::span<const std::array<std::uint32_t, 7>>);
 
 std::vector<std::uint32_t> weld(std::span<const Vec3d> positions) {
   std::vector<std::array<std::uint32_t, 6>> keys;

@@ -37,7 +37,7 @@ class HeaderParser {
  public:
   HeaderParser(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {
     const std::size_t end = bytes.find_first_of("\r\n");
-    eol_ = bytes.substr(end, bytes.substr(end).starts_with("\r\n") ? 2 : 1);
+    eol_ = bytes[end] == '\r' && !bytes.substr(end).starts_with("\r\n") ? '\r' : '\n';
   }
 
   PlyHeader parse() {
@@ -78,13 +78,13 @@ class HeaderParser {
     ++line_number_;
     const std::size_t end = bytes_.find(eol_, at_);
     line_ = bytes_.substr(at_, end == bytes_.npos ? bytes_.npos : end - at_);
-    at_ = end == bytes_.npos ? bytes_.size() : end + eol_.size();
+    at_ = end == bytes_.npos ? bytes_.size() : end + 1;
     return true;
   }
 
   std::string_view word() {
-    // '\r' is blank here: some writers end only some lines with it.
-    constexpr std::string_view k_blanks = " \t\r";
+    // Whatever ends no line is blank: some writers end only some lines with both.
+    constexpr std::string_view k_blanks = " \t\r\n";
     line_.remove_prefix(std::min(line_.find_first_not_of(k_blanks), line_.size()));
     const std::string_view found = line_.substr(0, line_.find_first_of(k_blanks));
     line_.remove_prefix(found.size());
@@ -162,7 +162,7 @@ class HeaderParser {
   }
 
   std::string_view bytes_;
-  std::string_view eol_;
+  char eol_ = '\n';        ///< the last character of every line's end; the first line tells which
   std::string_view line_;  ///< what is left of the current line
   std::size_t at_ = 0;     ///< where the next line starts
   std::uint64_t line_number_ = 0;
@@ -178,7 +178,9 @@ std::size_t size_bytes(PlyType type) {
 }
 
 bool is_ply(std::string_view bytes) {
-  return bytes.starts_with("ply") && bytes.size() > 3 && (bytes[3] == '\n' || bytes[3] == '\r');
+  const std::size_t end = bytes.find_first_not_of(" \t", 3);
+  return bytes.starts_with("ply") && end != bytes.npos &&
+         (bytes[end] == '\n' || bytes[end] == '\r');
 }
 
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {

@@ -17,7 +17,7 @@ namespace ds {
 ///   line     = "comment" text EOL | "obj_info" text EOL | element | EOL
 ///   element  = "element" NAME COUNT EOL {property | comment | obj_info}
 ///   property = "property" TYPE NAME EOL | "property" "list" INTEGER_TYPE TYPE NAME EOL
-///   EOL      = "\n" | "\r\n" | "\r", the one after "ply" throughout
+///   EOL      = "\n" | "\r\n" | "\r"; "\r" throughout where it stands after "ply"
 enum class PlyFormat { ascii, binary_little_endian, binary_big_endian };
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 

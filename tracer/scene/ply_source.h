@@ -23,6 +23,8 @@ namespace ds {
 ///   index         a value as a vertex index, see LineCursor::index
 ///   list_size     the count of a list of items of type `item`; a binary one fits what is left
 ///   skip          passes `count` values
+///   finish        ends the body: how many bytes follow that are no part of it
+///   fail_here     throws with the place reached
 /// All throw Error(asset) at a value that is not there or is of another kind.
 
 /// Text: the values of one element stand on one line; blank lines are skipped.
@@ -62,8 +64,16 @@ class PlyTextSource {
     }
   }
   std::size_t bytes_left() const { return cursor_.bytes_left(); }
-  void finish() {
-    if (cursor_.next_line()) cursor_.fail_here("text behind the last element the header promises");
+  std::size_t finish() {
+    if (!cursor_.next_line()) return 0;
+    cursor_.line_done();  // passes blanks
+    // Further values contradict the header; anything else is no part of the mesh.
+    if (parse_number(cursor_.rest()).size > 0)
+      cursor_.fail_here("text behind the last element the header promises");
+    return cursor_.bytes_left();
+  }
+  [[noreturn]] void fail_here(const std::string& message) const {
+    cursor_.fail_here("{}", message);
   }
 
  private:
@@ -122,11 +132,12 @@ class PlyBinarySource {
     at_ += static_cast<std::size_t>(count) * size_bytes(type);
   }
   std::size_t bytes_left() const { return bytes_.size() - at_; }
-  void finish() {
+  std::size_t finish() {
     // Some writers end the file with a line break.
-    if (bytes_.substr(at_).find_first_not_of("\r\n") != bytes_.npos)
-      fail(ErrorKind::asset, "{}: byte {}: {} bytes behind the last element the header promises",
-           name_, at_, bytes_left());
+    return bytes_.substr(at_).find_first_not_of("\r\n") == bytes_.npos ? 0 : bytes_left();
+  }
+  [[noreturn]] void fail_here(const std::string& message) const {
+    fail(ErrorKind::asset, "{}: byte {}: {}", name_, at_, message);
   }
 
  private:

@@ -23,10 +23,16 @@ TEST(OffReader, TakesEveryLineEndCommentsAndBlankLines) {
     expect_tetra(parse_model(replaced(k_tetra_off, "\n", eol), "m").mesh);
 }
 
-TEST(OffReader, PassesFaceColoursOver) {
-  for (const char* colour : {"7", "255 0 0", "0.1 0.2 0.3", "1 1 1 1"})
-    expect_tetra(
-        parse_model(replaced(k_tetra_off, "3 0 2 1", fmt::format("3 0 2 1 {}", colour)), "m").mesh);
+TEST(OffReader, FaceColoursChangeNoTriangle) {
+  for (const char* colour : {"7", "255 0 0", "0.1 0.2 0.3", "1 1 1 1"}) {
+    const auto mesh =
+        parse_model(replaced(k_tetra_off, "3 0 2 1", fmt::format("3 0 2 1 {}", colour)), "m").mesh;
+    ASSERT_EQ(mesh.triangles.size(), 4U);
+    for (std::size_t t = 0; t < 4; ++t)
+      for (std::size_t k = 0; k < 3; ++k)
+        EXPECT_EQ(mesh.positions[mesh.triangles[t][k]],
+                  samples::k_tetra_positions[samples::k_tetra_triangles[t][k]]);
+  }
 }
 
 struct Variant {

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/scene/mesh_polygons.h"
+#include "tracer/scene/mesh_text.h"
+#include "tracer/scene/mesh_topology.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace ds {
+namespace {
+
+using Key = std::array<std::uint32_t, 4>;
+
+std::uint32_t bits(float x) {
+  return std::bit_cast<std::uint32_t>(x);
+}
+
+/// What tells a corner from others of its vertex: uv and the number of its face's colour.
+std::vector<Key> corner_keys(const Polygons& polygons) {
+  std::vector<Key> colors;
+  for (const MeshColor& c : polygons.face_colors)
+    colors.push_back({bits(c[0]), bits(c[1]), bits(c[2]), bits(c[3])});
+  const std::vector<std::uint32_t> color = first_equal<4>(colors);
+  std::vector<Key> keys;
+  keys.reserve(polygons.corners.size());
+  std::size_t face = 0;
+  for (std::size_t c = 0; c < polygons.corners.size(); ++c) {
+    while (c >= polygons.face_ends[face])
+      ++face;
+    const Vec2 uv = polygons.corner_uvs.empty() ? Vec2{} : polygons.corner_uvs[c];
+    keys.push_back({polygons.corners[c], bits(uv.x), bits(uv.y), color.empty() ? 0 : color[face]});
+  }
+  return keys;
+}
+
+class Splitter {
+ public:
+  explicit Splitter(Polygons& polygons) : polygons_(polygons) {
+    const std::size_t vertices = polygons.positions.size();
+    if (!polygons.corner_uvs.empty()) polygons.uvs.assign(vertices, {});
+    if (!polygons.face_colors.empty()) polygons.colors.assign(vertices, {1, 1, 1, 1});
+  }
+
+  void split() {
+    const std::vector<Key> keys = corner_keys(polygons_);
+    const std::vector<std::uint32_t> first = first_equal<4>(keys);
+    std::vector<std::uint32_t> vertex_of(first.size(), LineCursor::k_bad_index);
+    std::vector<char> used(polygons_.positions.size(), 0);
+    std::size_t face = 0;
+    for (std::size_t c = 0; c < first.size(); ++c) {
+      while (c >= polygons_.face_ends[face])
+        ++face;
+      const std::uint32_t v = keys[c][0];
+      if (first[c] == c && v < used.size()) {
+        vertex_of[c] = used[v] ? copy(v) : v;
+        used[v] = 1;
+        if (!polygons_.corner_uvs.empty()) polygons_.uvs[vertex_of[c]] = polygons_.corner_uvs[c];
+        if (!polygons_.face_colors.empty())
+          polygons_.colors[vertex_of[c]] = polygons_.face_colors[face];
+      }
+      polygons_.corners[c] = vertex_of[first[c]];
+    }
+    polygons_.corner_uvs.clear();
+    polygons_.face_colors.clear();
+  }
+
+ private:
+  template <typename T>
+  static void repeat(std::vector<T>& values, std::size_t place) {
+    if (values.empty()) return;
+    const T value = values[place];
+    values.push_back(value);
+  }
+
+  std::uint32_t copy(std::size_t vertex) {
+    repeat(polygons_.positions, vertex);
+    repeat(polygons_.normals, vertex);
+    repeat(polygons_.uvs, vertex);
+    repeat(polygons_.colors, vertex);
+    return static_cast<std::uint32_t>(polygons_.positions.size() - 1);
+  }
+
+  Polygons& polygons_;
+};
+
+}  // namespace
+
+void unit_colors(std::vector<MeshColor>& colors) {
+  bool wide = false, wide_alpha = false;
+  for (const MeshColor& c : colors) {
+    wide = wide || c[0] > 1 || c[1] > 1 || c[2] > 1;
+    wide_alpha = wide_alpha || c[3] > 1;
+  }
+  const auto scaled = [](float x, bool by_255) { return by_255 ? x / 255.0F : x; };
+  for (MeshColor& c : colors) {
+    for (std::size_t i = 0; i < 3; ++i)
+      c[i] = std::max(scaled(c[i], wide), 0.0F);
+    c[3] = c[3] < 0 ? 1.0F : scaled(c[3], wide_alpha);
+  }
+}
+
+void split_corners(Polygons& polygons) {
+  unit_colors(polygons.colors);
+  unit_colors(polygons.face_colors);
+  if (!polygons.colors.empty()) polygons.face_colors.clear();
+  if (!polygons.corner_uvs.empty() || !polygons.face_colors.empty()) Splitter(polygons).split();
+}
+
+}  // namespace ds
