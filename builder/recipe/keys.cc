@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/recipe/keys.h"
 
+#include "tracer/base/nearest.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -224,39 +226,11 @@ constexpr std::array k_keys = {
             "12 bytes a pixel before compression"},
 };
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j)
-    row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row[b.size()];
-}
-
 std::string_view last_part(std::string_view name) {
   return name.substr(name.rfind('.') + 1);
 }
 
 }  // namespace
-
-bool KeyRange::contains(double value) const {
-  if (!std::isfinite(value)) return false;
-  return (open_least ? value > least : value >= least) &&
-         (open_most ? value < most : value <= most);
-}
-
-std::string KeyRange::text() const {
-  if (std::isinf(least) && std::isinf(most)) return "";
-  if (std::isinf(most)) return fmt::format("{} {}", open_least ? ">" : ">=", least);
-  return fmt::format("in {}{}, {}{}", open_least ? '(' : '[', least, most, open_most ? ')' : ']');
-}
 
 KeyCondition condition_of(const KeySpec& key) {
   const std::string_view text = key.only_with;
@@ -282,6 +256,15 @@ bool is_choice(std::string_view choices, std::string_view literal) {
     choices.remove_prefix(end == choices.npos ? choices.size() : end + 3);
   }
   return false;
+}
+
+std::vector<std::string_view> recipe_sections() {
+  std::vector<std::string_view> sections;
+  for (const KeySpec& key : k_keys) {
+    const std::string_view own = key.name.substr(0, key.name.find('.'));
+    if (sections.empty() || sections.back() != own) sections.push_back(own);
+  }
+  return sections;
 }
 
 std::string_view nearest_key(std::string_view unknown) {

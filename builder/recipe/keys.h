@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <limits>
+#include "tracer/base/number_range.h"
+
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace ds {
 
@@ -22,14 +24,7 @@ enum class KeyType {
   point_list,
 };
 
-struct KeyRange {
-  double least = -std::numeric_limits<double>::infinity();
-  double most = std::numeric_limits<double>::infinity();
-  bool open_least = false, open_most = false;  ///< the bound itself is outside
-
-  bool contains(double value) const;  ///< false for NaN and infinities
-  std::string text() const;           ///< "(0, 180)", ">= 0", "" where everything finite is inside
-};
+using KeyRange = NumberRange;
 
 /// One key of a recipe. The table of these is what the reader checks against and what
 /// recipes/README.md's reference is made from, so a key has one description.
@@ -63,6 +58,9 @@ struct KeyCondition {
 KeyCondition condition_of(const KeySpec& key);
 /// Whether a literal (as to_toml writes it) is one of " | "-separated ones.
 bool is_choice(std::string_view choices, std::string_view literal);
+
+/// "dataset", "models", ...: in the order of the reference.
+std::vector<std::string_view> recipe_sections();
 
 /// The known name that looks most like the unknown one, or "" where none does.
 std::string_view nearest_key(std::string_view unknown);

@@ -36,11 +36,11 @@ const ConductorIndex* find_conductor_preset(std::string_view name) {
   return found == std::end(k_presets) ? nullptr : &found->index;
 }
 
-std::string conductor_preset_names() {
+std::vector<std::string_view> conductor_preset_names() {
   std::vector<std::string_view> names;
   for (const Preset& preset : k_presets)
     names.push_back(preset.name);
-  return fmt::format("{}", fmt::join(names, ", "));
+  return names;
 }
 
 }  // namespace ds

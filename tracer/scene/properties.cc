@@ -142,6 +142,15 @@ void PropertySet::use_all(std::string_view prefix) {
     if (property.name == prefix || starts_with_part(property.name, prefix)) property.used = true;
 }
 
+void PropertySet::rename_prefix(std::string_view from, std::string_view to) {
+  for (Property& property : properties_)
+    if (starts_with_part(property.name, from))
+      property.name = std::string(to) + property.name.substr(from.size());
+  index_.clear();
+  for (std::size_t i = 0; i < properties_.size(); ++i)
+    index_.emplace(properties_[i].name, i);
+}
+
 std::vector<std::string> PropertySet::names_below(std::string_view prefix) const {
   std::vector<std::string> names;
   for (const Property& property : properties_) {

@@ -46,6 +46,9 @@ class PropertySet {
   const Property* use(std::string_view name);
   /// Marks every property used whose name is `prefix` or starts with `prefix` and a dot.
   void use_all(std::string_view prefix);
+  /// Puts `to` in the place of `from` in every name that starts with `from` and a dot; one that there
+  /// is already keeps its values.
+  void rename_prefix(std::string_view from, std::string_view to);
 
   /// The names that stand between `prefix.` and the next dot, each once, in order of appearance.
   std::vector<std::string> names_below(std::string_view prefix) const;

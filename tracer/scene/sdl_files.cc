@@ -3,7 +3,6 @@
 #include "tracer/scene/sdl_prune.h"
 #include "tracer/scene/sdl_reader.h"
 
-#include <algorithm>
 #include <span>
 
 namespace ds {
@@ -11,85 +10,6 @@ namespace {
 
 constexpr SdlKind k_scene_kinds[] = {SdlKind::texture, SdlKind::material, SdlKind::shape,
                                      SdlKind::object, SdlKind::light};
-
-/// Top parts of names that LuxCore has and this file has no place for, and why.
-struct Elsewhere {
-  std::string_view prefix;
-  std::string_view reason;
-};
-constexpr Elsewhere k_elsewhere[] = {
-    {"scene.camera", "does not belong here: the camera is in the recipe"},
-    {"scene.volumes", "is not supported yet"},
-    {"scene.world", "is not supported yet"},
-    {"scene.epsilon", "is not supported yet"},
-    {"scene.images", "is not supported yet"},
-    {"scene.lightgroups", "is not supported yet"},
-    {"scene.sunlight", "is not supported yet: name it scene.lights.NAME.type = sun"},
-    {"scene.skylight", "is not supported yet: name it scene.lights.NAME.type = sky2"},
-    {"scene.infinitelight", "is not supported yet: name it scene.lights.NAME.type = infinite"},
-    {"film.imagepipelines", "is not supported yet: use film.imagepipeline"},
-    {"film", "does not belong here: only film.imagepipeline does, the rest is in the recipe"},
-    {"renderengine", "does not belong here: the engine is in the recipe"},
-    {"sampler", "does not belong here: the engine is in the recipe"},
-    {"path", "does not belong here: the engine is in the recipe"},
-    {"lightstrategy", "does not belong here: the engine is in the recipe"},
-    {"batch", "does not belong here: the engine is in the recipe"},
-    {"opencl", "does not belong here: the engine is in the recipe"},
-    {"native", "does not belong here: the engine is in the recipe"},
-};
-
-bool is_below(std::string_view name, std::string_view prefix) {
-  return name.size() > prefix.size() && name.starts_with(prefix) && name[prefix.size()] == '.';
-}
-
-void report_node_property(SdlReader& reader, SdlKind kind, const Property& property) {
-  const std::string_view rest = std::string_view(property.name).substr(section_of(kind).size() + 1);
-  const std::size_t dot = rest.find('.');
-  if (dot == std::string_view::npos) {
-    reader.diagnostics.add(property.place, "{} is unknown: wanted a property of a {}",
-                           property.name, word_for(kind));
-    return;
-  }
-  switch (classify_leftover(kind, rest.substr(dot + 1), property)) {
-    case Leftover::no_effect:
-      return;
-    case Leftover::not_supported:
-      reader.diagnostics.add(property.place, "{} = {} is not supported yet", property.name,
-                             fmt::join(property.values, " "));
-      return;
-    case Leftover::unknown:
-      break;
-  }
-  const Property* type =
-      reader.properties.find(fmt::format("{}.{}.type", section_of(kind), rest.substr(0, dot)));
-  reader.diagnostics.add(property.place, "{} is unknown to a {}{}{}", property.name, word_for(kind),
-                         type ? " of type " : "", type ? type->values.front() : "");
-}
-
-/// Says of each property that nobody took why not. `kinds` are those that may stand in the file.
-void report_unused(SdlReader& reader, std::span<const SdlKind> kinds, std::string_view what) {
-  for (const Property* property : reader.properties.unused()) {
-    const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](SdlKind k) {
-      return is_below(property->name, section_of(k));
-    });
-    if (kind != kinds.end()) {
-      report_node_property(reader, *kind, *property);
-      continue;
-    }
-    const auto misplaced =
-        std::find_if(std::begin(k_scene_kinds), std::end(k_scene_kinds),
-                     [&](SdlKind k) { return is_below(property->name, section_of(k)); });
-    const auto elsewhere =
-        std::find_if(std::begin(k_elsewhere), std::end(k_elsewhere),
-                     [&](const Elsewhere& e) { return is_below(property->name, e.prefix); });
-    if (misplaced != std::end(k_scene_kinds))
-      reader.diagnostics.add(property->place, "{} does not belong in {}", property->name, what);
-    else if (elsewhere != std::end(k_elsewhere))
-      reader.diagnostics.add(property->place, "{} {}", property->name, elsewhere->reason);
-    else
-      reader.diagnostics.add(property->place, "{} is unknown", property->name);
-  }
-}
 
 void require_file(const std::filesystem::path& file) {
   std::error_code ignored;
@@ -104,6 +24,7 @@ Scene read_material(const std::filesystem::path& file) {
   Diagnostics diagnostics(ErrorKind::asset);
   PropertySet properties = PropertySet::read(file, diagnostics);
   SdlReader reader(std::move(properties), file.parent_path(), diagnostics);
+  mend_section_names(reader);
   read_textures(reader);
   read_materials(reader);
   report_unused(reader, std::span(k_scene_kinds).first(2), "a material file");
@@ -121,6 +42,7 @@ Scene read_environment(const std::filesystem::path& folder) {
   PropertySet scene_properties = PropertySet::read(scene_file, diagnostics);
   SdlReader reader(std::move(scene_properties), folder, diagnostics);
   reader.environment = true;
+  mend_section_names(reader);
   read_textures(reader);
   read_materials(reader);
   read_shapes(reader);
@@ -133,6 +55,7 @@ Scene read_environment(const std::filesystem::path& folder) {
   PropertySet film_properties =
       has_film ? PropertySet::read(film_file, diagnostics) : PropertySet{};
   SdlReader film(std::move(film_properties), folder, diagnostics);
+  mend_section_names(film);
   reader.scene.tone_map = read_tone_map(film);
   constexpr SdlKind k_film[] = {SdlKind::film};
   report_unused(film, k_film, "a film file");

@@ -21,33 +21,30 @@ std::vector<std::string> steps_in_order(const PropertySet& properties) {
   return steps;
 }
 
-float positive(const SdlNode& node, std::string_view property, float default_value) {
-  const double value = node.number(property, double{default_value});
-  if (value > 0) return static_cast<float>(value);
-  node.error(property, "wanted a number above 0, found {}", value);
-  return default_value;
+float number(const SdlNode& node, std::string_view property) {
+  return static_cast<float>(node.number(property));
 }
 
 class PipelineReader {
  public:
   explicit PipelineReader(ToneMap& tone_map) : tone_map_(tone_map) { tone_map_.gamma = 1; }
 
-  void read(const SdlNode& node) {
-    const std::string type = node.type("");
+  void read(SdlNode node) {
+    if (!node.read_type()) return;
+    const std::string& type = node.type();
     if (type == "NOP") return;
     if (type == "GAMMA_CORRECTION") return read_gamma(node);
     if (type == "TONEMAP_LINEAR") {
       take_tone_map(node, ToneMap::Kind::linear);
-      tone_map_.scale = positive(node, "scale", 1);
+      tone_map_.scale = number(node, "scale");
     } else if (type == "TONEMAP_REINHARD02") {
       take_tone_map(node, ToneMap::Kind::reinhard02);
-      tone_map_.prescale = positive(node, "prescale", tone_map_.prescale);
-      tone_map_.postscale = positive(node, "postscale", tone_map_.postscale);
-      tone_map_.burn = positive(node, "burn", tone_map_.burn);
-    } else if (type == "TONEMAP_AUTOLINEAR") {
-      take_tone_map(node, ToneMap::Kind::autolinear);
+      tone_map_.prescale = number(node, "prescale");
+      tone_map_.postscale = number(node, "postscale");
+      tone_map_.burn = number(node, "burn");
     } else {
-      node.refuse_type(type);
+      DS_ASSERT(type == "TONEMAP_AUTOLINEAR");
+      take_tone_map(node, ToneMap::Kind::autolinear);
     }
   }
 
@@ -61,8 +58,8 @@ class PipelineReader {
   void read_gamma(const SdlNode& node) {
     if (has_gamma_) node.error("type", "a second GAMMA_CORRECTION is not supported yet");
     has_gamma_ = true;
-    tone_map_.gamma = positive(node, "value", 2.2f);
-    node.number("table.size", 4096);
+    tone_map_.gamma = number(node, "value");
+    node.number("table.size");
   }
 
   ToneMap& tone_map_;
@@ -71,6 +68,33 @@ class PipelineReader {
 };
 
 }  // namespace
+
+const SdlSection& film_section() {
+  constexpr NumberRange k_positive{.least = 0, .open_least = true};
+  static const SdlSection section{
+      SdlKind::film,
+      "film",
+      "`environment.cfg`: the steps `film.imagepipeline.N.*` from linear radiance to a picture, in "
+      "the order of N: at most one tone map, then at most one GAMMA_CORRECTION. Without any step: "
+      "TONEMAP_AUTOLINEAR, then a gamma of 2.2.",
+      "",
+      {},
+      {{"TONEMAP_LINEAR",
+        "A factor.",
+        {{"scale", SdlType::number, "1", "factor on the radiance", k_positive}}},
+       {"TONEMAP_REINHARD02",
+        "Reinhard and others' global curve.",
+        {{"prescale", SdlType::number, "1", "factor before the curve", k_positive},
+         {"postscale", SdlType::number, "1.2", "factor behind it", k_positive},
+         {"burn", SdlType::number, "3.75", "where highlights burn out", k_positive}}},
+       {"TONEMAP_AUTOLINEAR", "A factor that the picture's mean luminance gives.", {}},
+       {"GAMMA_CORRECTION",
+        "Pictures hold radiance^(1/value).",
+        {{"value", SdlType::number, "2.2", "the gamma", k_positive},
+         {"table.size", SdlType::number, "4096", "of LuxCore's table; no effect"}}},
+       {"NOP", "Nothing.", {}}}};
+  return section;
+}
 
 ToneMap read_tone_map(SdlReader& reader) {
   ToneMap tone_map;

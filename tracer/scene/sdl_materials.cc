@@ -19,12 +19,10 @@ void set_input(Material& material, std::string_view input, Vec3 value) {
 /// metal2: the first of preset (or name), fresnel and n, k counts.
 void finish_metal2(const SdlNode& node, Material& material) {
   const char* preset_name = node.has("preset") ? "preset" : "name";
-  if (const std::optional<std::string> preset = node.text(preset_name)) {
-    if (const ConductorIndex* index = find_conductor_preset(*preset)) {
+  if (node.has(preset_name)) {
+    if (const ConductorIndex* index = find_conductor_preset(node.choice(preset_name))) {
       set_input(material, "n", index->n);
       set_input(material, "k", index->k);
-    } else {
-      node.error(preset_name, "wanted one of {}, found \"{}\"", conductor_preset_names(), *preset);
     }
     return;
   }
@@ -32,10 +30,7 @@ void finish_metal2(const SdlNode& node, Material& material) {
   if (!fresnel) return;
   const auto found = node.reader().conductors.find(*fresnel);
   if (found == node.reader().conductors.end()) {
-    node.error(
-        "fresnel",
-        "wanted the name of a fresnelpreset, fresnelcolor or fresnelconst texture, found \"{}\"",
-        *fresnel);
+    node.miss_reference("fresnel", SdlKind::texture, *fresnel, node.reader().conductors);
     return;
   }
   set_input(material, "n", found->second.n);
@@ -48,7 +43,7 @@ void finish_glass(const SdlNode& node, Material& material) {
       {{"interiorior", "iorinside"}, {"exteriorior", "ioroutside"}}};
   const NodeType& row = material_types()[static_cast<std::size_t>(material.type)];
   for (const auto& [name, old_name] : k_old_names) {
-    const std::optional<TextureRef> value = node.texture(old_name, 1);
+    const std::optional<TextureRef> value = node.texture(old_name);
     if (value && !node.has(name))
       material.inputs[static_cast<std::size_t>(find_input(row, name))] = *value;
   }
@@ -58,12 +53,12 @@ int child_index(const SdlNode& node, std::string_view property) {
   const std::optional<std::string> name = node.text(property);
   SdlReader& reader = node.reader();
   if (!name) {
-    if (!node.has(property)) node.error("", "{} is missing", property);
+    if (!node.has(property)) node.miss(property);
     return -1;
   }
   const auto found = reader.materials.find(*name);
   if (found == reader.materials.end()) {
-    node.error(property, "material \"{}\" is not defined above", *name);
+    node.miss_reference(property, SdlKind::material, *name, reader.materials);
     return -1;
   }
   if (reader.scene.materials[static_cast<std::size_t>(found->second)].emits)
@@ -77,13 +72,37 @@ void finish_mix(const SdlNode& node, Material& material) {
   material.children[1] = child_index(node, "material2");
 }
 
+/// What some materials have beyond their kernel header.
 struct Finish {
   std::string_view type;
+  std::vector<SdlParameter> parameters;
   void (*finish)(const SdlNode&, Material&);
 };
-/// What some materials need beyond their row in the table.
-constexpr Finish k_finishes[] = {
-    {"metal2", finish_metal2}, {"glass", finish_glass}, {"mix", finish_mix}};
+
+const std::vector<Finish>& finishes() {
+  constexpr NumberRange k_index{.least = 0.01};
+  static const std::vector<Finish> table{
+      {"metal2",
+       {{"preset",
+         SdlType::choice,
+         "",
+         "a metal's n and k; instead of n and k",
+         {},
+         conductor_preset_names()},
+        {"name", SdlType::choice, "", "as preset", {}, conductor_preset_names()},
+        {"fresnel", SdlType::text, "",
+         "a texture fresnelpreset, fresnelcolor or fresnelconst; instead of n and k"}},
+       finish_metal2},
+      {"glass",
+       {{"iorinside", SdlType::scalar_input, "", "old name of interiorior", k_index},
+        {"ioroutside", SdlType::scalar_input, "", "old name of exteriorior", k_index}},
+       finish_glass},
+      {"mix",
+       {{"material1", SdlType::text, "", "a material defined above; must be given"},
+        {"material2", SdlType::text, "", "likewise, with probability amount"}},
+       finish_mix}};
+  return table;
+}
 
 /// Luminance by which LuxCore divides where a light is normalised; nothing, with a finding, where
 /// it is not known.
@@ -104,19 +123,15 @@ std::optional<double> emission_luminance(const SdlNode& node, std::string_view p
 /// says so.
 void read_emission(const SdlNode& node, Material& material, int index) {
   SdlReader& reader = node.reader();
-  const std::optional<TextureRef> emission = node.texture("emission", 3);
-  Vec3d factor = node.color("emission.gain", {1, 1, 1});
+  const std::optional<TextureRef> emission = node.texture("emission");
+  Vec3d factor = node.color("emission.gain");
   factor = factor * temperature_factor(node, "emission.temperature");
-  const double power = node.number("emission.power", 0);
+  const double power = node.number("emission.power");
   const char* efficiency_name =
       node.has("emission.efficency") ? "emission.efficency" : "emission.efficiency";
-  const double efficiency = node.number(efficiency_name, 0);
-  const bool normalize = node.flag("emission.normalizebycolor", true);
-  const bool normalize_gain = node.flag("emission.gain.normalizebycolor", false);
-  if (power < 0)
-    node.error("emission.power", "wanted a number that is not negative, found {}", power);
-  if (efficiency < 0)
-    node.error(efficiency_name, "wanted a number that is not negative, found {}", efficiency);
+  const double efficiency = node.number(efficiency_name);
+  const bool normalize = node.flag("emission.normalizebycolor");
+  const bool normalize_gain = node.flag("emission.gain.normalizebycolor");
   if (!emission) return;
   if (emission->texture < 0 && emission->constant == Vec3{}) return;
 
@@ -136,16 +151,17 @@ void read_emission(const SdlNode& node, Material& material, int index) {
   material.emission = scaled(reader, node.name() + ".emission", *emission, factor);
 }
 
-void read_material_node(const SdlNode& node) {
+void read_material_node(SdlNode node) {
   SdlReader& reader = node.reader();
-  const std::string type = node.type("matte");
+  if (!node.read_type()) return;
+  const std::string& type = node.type();
   Material material;
   material.name = node.name();
   material.type = find_type(material_types(), type);
-  if (material.type < 0) return node.refuse_type(type);
+  DS_ASSERT(material.type >= 0);
   node.read_row(material_types()[static_cast<std::size_t>(material.type)], material.inputs,
                 material.numbers);
-  for (const Finish& finish : k_finishes)
+  for (const Finish& finish : finishes())
     if (finish.type == type) finish.finish(node, material);
   const int index = static_cast<int>(reader.scene.materials.size());
   read_emission(node, material, index);
@@ -153,7 +169,47 @@ void read_material_node(const SdlNode& node) {
   reader.scene.materials.push_back(std::move(material));
 }
 
+std::vector<SdlParameter> emission_parameters() {
+  constexpr NumberRange k_not_negative{.least = 0};
+  return concatenated(
+      {{{"emission", SdlType::color_input, "0", "radiance; what emits is a light", k_not_negative},
+        {"emission.gain", SdlType::color, "1 1 1", "factor on emission", k_not_negative},
+        {"emission.gain.normalizebycolor", SdlType::flag, "0",
+         "divide by the emission's luminance"}},
+       temperature_parameters("emission.temperature"),
+       {{"emission.power", SdlType::number, "0",
+         "watts of each object; with an efficiency above 0 it replaces the radiance",
+         k_not_negative},
+        {"emission.efficiency", SdlType::number, "0", "lumens a watt, as LuxCore has it",
+         k_not_negative},
+        {"emission.efficency", SdlType::number, "0", "LuxCore's misspelling of it", k_not_negative},
+        {"emission.normalizebycolor", SdlType::flag, "1",
+         "power is the same whatever the colour"}}});
+}
+
 }  // namespace
+
+const SdlSection& material_section() {
+  static const SdlSection section = [] {
+    SdlSection made{SdlKind::material,
+                    "materials",
+                    "A `.mat` file is for the last material in it; others are its parts. What is a "
+                    "number or a colour may be a texture, which stands above its use.",
+                    "matte",
+                    emission_parameters(),
+                    {}};
+    for (const NodeType& type : material_types()) {
+      SdlTypeRow row{std::string(type.name), header_comment("materials", type),
+                     header_parameters(type)};
+      for (const Finish& finish : finishes())
+        if (finish.type == type.name)
+          row.parameters = concatenated({std::move(row.parameters), finish.parameters});
+      made.types.push_back(std::move(row));
+    }
+    return made;
+  }();
+  return section;
+}
 
 void read_materials(SdlReader& reader) {
   for (const std::string& name : reader.properties.names_below("scene.materials"))

@@ -2,6 +2,7 @@
 #include "tracer/scene/sdl_names.h"
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 
 namespace ds {
@@ -206,14 +207,6 @@ Names property_names_of(SdlKind kind) {
   return {};
 }
 
-/// A property that changes nothing while it has this value; "*": whatever its value. Covers what is
-/// below it too.
-struct NoEffect {
-  SdlKind kind;
-  std::string_view name;
-  std::string_view value;
-};
-
 // "importance", "directlightsampling", "visibilitymapcache" and "distribution" choose how LuxCore
 // samples, "id" of a light or material which output groups it is counted in, "photongi" and
 // "bumpsamplingdistance" act with features that are refused.
@@ -306,6 +299,13 @@ std::string_view word_for(SdlKind kind) {
 
 bool luxcore_has_type(SdlKind kind, std::string_view type) {
   return contains(types_of(kind), type);
+}
+
+std::vector<NoEffect> no_effect_properties(SdlKind kind) {
+  std::vector<NoEffect> found;
+  std::copy_if(std::begin(k_no_effect), std::end(k_no_effect), std::back_inserter(found),
+               [&](const NoEffect& entry) { return entry.kind == kind; });
+  return found;
 }
 
 Leftover classify_leftover(SdlKind kind, std::string_view name, const Property& property) {

@@ -5,6 +5,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace ds {
 
@@ -18,6 +19,15 @@ std::string_view word_for(SdlKind kind);
 
 /// Whether LuxCore 2.x has such a type. Tells "not supported yet" from "unknown".
 bool luxcore_has_type(SdlKind kind, std::string_view type);
+
+/// A property of LuxCore that changes nothing dsbuild renders while it has this value; "*":
+/// whatever its value. Covers what is below it too.
+struct NoEffect {
+  SdlKind kind;
+  std::string_view name;
+  std::string_view value;
+};
+std::vector<NoEffect> no_effect_properties(SdlKind kind);
 
 /// What a property that no reader took is.
 enum class Leftover {

@@ -17,13 +17,19 @@ std::optional<FileMesh> read_ply(const SdlNode& node) {
   try {
     return read_model(*file, Winding::as_stored).mesh;
   } catch (const Error& error) {
-    node.error("ply", "{}", error.what());
+    if (node.reader().missed.insert(file->string()).second) node.error("ply", "{}", error.what());
     return std::nullopt;
   }
 }
 
-std::vector<Vec3d> read_vectors(const SdlNode& node, std::string_view property) {
-  const std::vector<double> v = node.list(property, 3);
+std::vector<SdlParameter> inlined_parameters() {
+  return {{"vertices", SdlType::list, "", "x y z of each vertex"},
+          {"faces", SdlType::list, "", "three indices of vertices a triangle, from 0"},
+          {"normals", SdlType::list, "", "x y z a vertex"},
+          {"uvs", SdlType::list, "", "u v a vertex"}};
+}
+
+std::vector<Vec3d> vectors(const std::vector<double>& v) {
   std::vector<Vec3d> result;
   for (std::size_t i = 0; i + 2 < v.size(); i += 3)
     result.push_back({v[i], v[i + 1], v[i + 2]});
@@ -39,28 +45,34 @@ void check_count(const SdlNode& node, std::string_view property, std::size_t fou
 /// vertices, faces, normals and uvs as numbers in the file.
 std::optional<FileMesh> read_inlined(const SdlNode& node) {
   FileMesh mesh;
-  mesh.positions = read_vectors(node, "vertices");
-  for (const Vec3d normal : read_vectors(node, "normals"))
+  const auto positions = node.list("vertices", 3);
+  const auto normals = node.list("normals", 3);
+  const auto uvs = node.list("uvs", 2);
+  const auto faces = node.list("faces", 3);
+  if (!positions || !normals || !uvs || !faces) return std::nullopt;
+  mesh.positions = vectors(*positions);
+  for (const Vec3d normal : vectors(*normals))
     mesh.normals.push_back(to_float(normalized(normal)));
-  const std::vector<double> uvs = node.list("uvs", 2);
-  for (std::size_t i = 0; i + 1 < uvs.size(); i += 2)
-    mesh.uvs.push_back({static_cast<float>(uvs[i]), static_cast<float>(uvs[i + 1])});
+  for (std::size_t i = 0; i + 1 < uvs->size(); i += 2)
+    mesh.uvs.push_back({static_cast<float>((*uvs)[i]), static_cast<float>((*uvs)[i + 1])});
   const std::size_t vertices = mesh.positions.size();
   check_count(node, "normals", mesh.normals.size(), vertices);
   check_count(node, "uvs", mesh.uvs.size(), vertices);
 
-  const std::vector<double> faces = node.list("faces", 3);
-  for (const double index : faces)
+  for (const double index : *faces)
     if (!(index >= 0 && index < static_cast<double>(vertices) && std::floor(index) == index)) {
       node.error("faces", "wanted indices below {}, found {}", vertices, index);
       return std::nullopt;
     }
-  for (std::size_t i = 0; i + 2 < faces.size(); i += 3)
-    mesh.triangles.push_back({static_cast<std::uint32_t>(faces[i]),
-                              static_cast<std::uint32_t>(faces[i + 1]),
-                              static_cast<std::uint32_t>(faces[i + 2])});
+  for (std::size_t i = 0; i + 2 < faces->size(); i += 3)
+    mesh.triangles.push_back({static_cast<std::uint32_t>((*faces)[i]),
+                              static_cast<std::uint32_t>((*faces)[i + 1]),
+                              static_cast<std::uint32_t>((*faces)[i + 2])});
   if (!mesh.triangles.empty()) return mesh;
-  node.error("faces", "wanted at least one triangle, found none");
+  if (node.has("faces"))
+    node.error("faces", "wanted at least one triangle, found none");
+  else
+    node.miss("faces");
   return std::nullopt;
 }
 
@@ -83,14 +95,17 @@ std::optional<FileMesh> shape_of(const SdlNode& node) {
   if (!name) return std::nullopt;
   const auto found = node.reader().shapes.find(*name);
   if (found != node.reader().shapes.end()) return found->second;
-  node.error("shape", "shape \"{}\" is not defined, or has an error", *name);
+  node.miss_reference("shape", SdlKind::shape, *name, node.reader().shapes);
   return std::nullopt;
 }
 
 std::optional<FileMesh> read_object_mesh(const SdlNode& node) {
   const int sources = int{node.has("ply")} + int{node.has("shape")} + int{node.has("vertices")};
   if (sources != 1) {
-    node.error("", "wanted one of ply, shape and vertices, found {}", sources);
+    constexpr std::string_view k_sources[] = {"ply", "shape", "vertices"};
+    node.miss(sources == 0 ? std::span<const std::string_view>(k_sources)
+                           : std::span<const std::string_view>(),
+              fmt::format("wanted one of ply, shape and vertices, found {}", sources));
     return std::nullopt;
   }
   if (node.has("ply")) return read_ply(node);
@@ -130,12 +145,12 @@ void apply_power(const SdlNode& node, Object& object) {
 int material_of(const SdlNode& node) {
   const std::optional<std::string> name = node.text("material");
   if (!name) {
-    if (!node.has("material")) node.error("", "material is missing");
+    if (!node.has("material")) node.miss("material");
     return -1;
   }
   const auto found = node.reader().materials.find(*name);
   if (found != node.reader().materials.end()) return found->second;
-  node.error("material", "material \"{}\" is not defined, or has an error", *name);
+  node.miss_reference("material", SdlKind::material, *name, node.reader().materials);
   return -1;
 }
 
@@ -143,8 +158,8 @@ void read_object(const SdlNode& node) {
   Object object;
   object.name = node.name();
   object.material = material_of(node);
-  object.camera_invisible = node.flag("camerainvisible", false);
-  object.id = node.id("id").value_or(0);
+  object.camera_invisible = node.flag("camerainvisible");
+  object.id = node.id("id");
   if (object.id == k_model_object_id)
     node.error("id", "{} is the id of the dataset's model, take another", object.id);
   std::optional<FileMesh> mesh = read_object_mesh(node);
@@ -159,16 +174,61 @@ void read_object(const SdlNode& node) {
   node.reader().scene.objects.push_back(std::move(object));
 }
 
-void read_shape(const SdlNode& node) {
-  const std::string type = node.type("mesh");
-  if (type != "mesh" && type != "inlinedmesh") return node.refuse_type(type);
-  if (type == "mesh" && !node.has("ply")) node.error("", "ply is missing");
+void read_shape(SdlNode node) {
+  if (!node.read_type()) return;
+  const std::string& type = node.type();
+  if (type == "mesh" && !node.has("ply")) node.miss("ply");
   std::optional<FileMesh> mesh = type == "mesh" ? read_ply(node) : read_inlined(node);
   if (type == "mesh" && mesh) transform(*mesh, node.matrix("transformation"));
   if (mesh) node.reader().shapes.emplace(node.name(), std::move(*mesh));
 }
 
+SdlParameter ply_parameter() {
+  return {"ply", SdlType::file, "", "a mesh file: PLY or OFF"};
+}
+
 }  // namespace
+
+const SdlSection& shape_section() {
+  static const SdlSection section{
+      SdlKind::shape,
+      "shapes",
+      "Meshes that several objects may share.",
+      "mesh",
+      {},
+      {{"mesh",
+        "A mesh file.",
+        {ply_parameter(),
+         {"transformation", SdlType::matrix, "1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1",
+          "affine, applied to the points"}}},
+       {"inlinedmesh", "A mesh in the file itself.", inlined_parameters()}}};
+  return section;
+}
+
+const SdlSection& object_section() {
+  static const SdlSection section{
+      SdlKind::object,
+      "objects",
+      "What stands in an environment. An object has a material and one of `ply`, `shape` and "
+      "`vertices`.",
+      "",
+      {},
+      {{"", "",
+        concatenated(
+            {{{"material", SdlType::text, "", "the name of a material; must be given"},
+              ply_parameter(),
+              {"shape", SdlType::text, "", "the name of a shape"}},
+             inlined_parameters(),
+             {{"transformation", SdlType::matrix, "1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1",
+               "affine, to the world"},
+              {"camerainvisible", SdlType::flag, "0", "seen in reflections and shadows only"},
+              {"id",
+               SdlType::id,
+               "0",
+               fmt::format("for the mask; {} is the dataset's model", k_model_object_id),
+               {.least = 0, .most = 4294967295.0}}}})}}};
+  return section;
+}
 
 void read_shapes(SdlReader& reader) {
   for (const std::string& name : reader.properties.names_below("scene.shapes"))

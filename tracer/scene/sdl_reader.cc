@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/scene/sdl_reader.h"
 
+#include "tracer/base/nearest.h"
 #include "tracer/scene/sdl_math.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <system_error>
@@ -64,7 +67,10 @@ SdlNode::SdlNode(SdlReader& reader, SdlKind kind, std::string name)
     : reader_(&reader),
       kind_(kind),
       name_(std::move(name)),
-      prefix_(fmt::format("{}.{}", section_of(kind), name_)) {}
+      prefix_(fmt::format("{}.{}", section_of(kind), name_)),
+      section_(&sdl_section(kind)) {
+  if (section_->types.size() == 1) row_ = &section_->types.front();
+}
 
 std::string SdlNode::full_name(std::string_view property) const {
   return property.empty() ? prefix_ : fmt::format("{}.{}", prefix_, property);
@@ -84,19 +90,34 @@ bool SdlNode::has(std::string_view property) const {
   return reader_->properties.find(full_name(property)) != nullptr;
 }
 
-std::string SdlNode::type(std::string_view default_type) const {
-  return text("type").value_or(std::string(default_type));
+/// What is read and not in the table would be missing in the reference.
+const SdlParameter& SdlNode::parameter(std::string_view property) const {
+  const SdlParameter* found = find_parameter(*section_, row_, property);
+  DS_ASSERT(found != nullptr);
+  return *found;
 }
 
-void SdlNode::refuse_type(std::string_view type) const {
-  reader_->properties.use_all(prefix_);
-  if (luxcore_has_type(kind_, type))
-    error("type", "{} type \"{}\" is not supported yet", word_for(kind_), type);
-  else
-    error("type", "{} type \"{}\" is unknown", word_for(kind_), type);
+bool SdlNode::read_type() {
+  std::string type(section_->default_type);
+  if (const Property* found = use("type")) {
+    if (found->values.size() != 1)
+      error("type", "wanted one value, found \"{}\"", joined(*found));
+    else
+      type = found->values[0];
+  }
+  row_ = find_type(*section_, type);
+  if (row_ == nullptr) refuse_type(type);
+  return row_ != nullptr;
+}
+
+void SdlNode::refuse(const SdlParameter& wanted, const Property& found) const {
+  const std::string value = joined(found);
+  error(wanted.name, "wanted {}, found \"{}\"{}", wanted_text(wanted), value,
+        did_you_mean(value, wanted.choices));
 }
 
 std::optional<std::string> SdlNode::text(std::string_view property) const {
+  parameter(property);
   const Property* found = use(property);
   if (!found) return std::nullopt;
   if (found->values.size() == 1) return found->values[0];
@@ -104,69 +125,94 @@ std::optional<std::string> SdlNode::text(std::string_view property) const {
   return std::nullopt;
 }
 
-std::optional<std::vector<double>> SdlNode::numbers(std::string_view property,
-                                                    std::size_t count) const {
+std::string SdlNode::choice(std::string_view property) const {
+  const SdlParameter& wanted = parameter(property);
   const Property* found = use(property);
+  if (!found) return wanted.default_value;
+  const std::string value = joined(*found);
+  const auto& choices = wanted.choices;
+  if (std::find(choices.begin(), choices.end(), value) != choices.end()) return value;
+  refuse(wanted, *found);
+  return wanted.default_value;
+}
+
+std::optional<std::vector<double>> SdlNode::numbers(const SdlParameter& wanted,
+                                                    std::size_t count) const {
+  const Property* found = use(wanted.name);
   if (!found) return std::nullopt;
   std::vector<double> result;
   const std::vector<std::string> words = words_of(*found);
   for (const std::string& word : words)
-    if (const std::optional<double> value = parse_sdl_number(word)) result.push_back(*value);
+    if (const std::optional<double> value = parse_sdl_number(word))
+      if (wanted.range.contains(*value)) result.push_back(*value);
   if (words.size() == count && result.size() == count) return result;
-  error(property, "wanted {}, found \"{}\"",
-        count == 1 ? std::string("a number") : fmt::format("{} numbers", count), joined(*found));
+  refuse(wanted, *found);
   return std::nullopt;
 }
 
-std::optional<double> SdlNode::number(std::string_view property) const {
-  const std::optional<std::vector<double>> values = numbers(property, 1);
-  if (!values) return std::nullopt;
-  return values->front();
+std::vector<double> SdlNode::numbers_or_default(std::string_view property,
+                                                std::size_t count) const {
+  const SdlParameter& wanted = parameter(property);
+  if (const auto values = numbers(wanted, count)) return *values;
+  std::vector<double> result;
+  for (const std::string& word : words_of(Property{{}, {wanted.default_value}, {}, false}))
+    result.push_back(parse_sdl_number(word).value());
+  DS_ASSERT(result.size() == count);
+  return result;
 }
 
-double SdlNode::number(std::string_view property, double default_value) const {
-  return number(property).value_or(default_value);
+double SdlNode::number(std::string_view property) const {
+  return numbers_or_default(property, 1)[0];
 }
 
-bool SdlNode::flag(std::string_view property, bool default_value) const {
+bool SdlNode::flag(std::string_view property) const {
+  const SdlParameter& wanted = parameter(property);
+  const bool default_value = wanted.default_value == "1";
   const Property* found = use(property);
   if (!found) return default_value;
   const std::string value = joined(*found);
   if (value == "1" || value == "true") return true;
   if (value == "0" || value == "false") return false;
-  error(property, "wanted 0, 1, true or false, found \"{}\"", value);
+  refuse(wanted, *found);
   return default_value;
 }
 
-Vec3d SdlNode::vector(std::string_view property, Vec3d default_value) const {
-  const std::optional<std::vector<double>> v = numbers(property, 3);
-  return v ? Vec3d{(*v)[0], (*v)[1], (*v)[2]} : default_value;
+std::array<double, 2> SdlNode::pair(std::string_view property) const {
+  const std::vector<double> v = numbers_or_default(property, 2);
+  return {v[0], v[1]};
 }
 
-Vec3d SdlNode::color(std::string_view property, Vec3d default_value) const {
+Vec3d SdlNode::vector(std::string_view property) const {
+  const std::vector<double> v = numbers_or_default(property, 3);
+  return {v[0], v[1], v[2]};
+}
+
+Vec3d SdlNode::color(std::string_view property) const {
+  const SdlParameter& wanted = parameter(property);
+  Property value{{}, {wanted.default_value}, {}, false};
   const Property* found = use(property);
-  if (!found) return default_value;
-  std::vector<std::string> words = words_of(*found);
+  if (found) value = *found;
+  std::vector<std::string> words = words_of(value);
   const std::optional<double> gamma = take_color_space(words);
-  if (!gamma) {
-    error(property, "colour space of \"{}\" is not supported yet", joined(*found));
-    return default_value;
-  }
   double v[3] = {0, 0, 0};
-  bool good = words.size() == 3;
+  bool good = gamma && words.size() == 3;
   for (std::size_t i = 0; good && i < 3; ++i) {
-    const std::optional<double> value = parse_sdl_number(words[i]);
-    good = value && *value >= 0;
-    if (good) v[i] = linear(*value, *gamma);
+    const std::optional<double> number = parse_sdl_number(words[i]);
+    good = number && wanted.range.contains(*number);
+    if (good) v[i] = linear(*number, *gamma);
   }
   if (good) return {v[0], v[1], v[2]};
-  error(property, "wanted three numbers that are not negative, found \"{}\"", joined(*found));
-  return default_value;
+  DS_ASSERT(found != nullptr);  // the default is right
+  if (!gamma)
+    error(property, "colour space of \"{}\" is not supported yet", joined(*found));
+  else
+    refuse(wanted, *found);
+  return {};
 }
 
 Mat4 SdlNode::matrix(std::string_view property) const {
   Mat4 result;
-  const std::optional<std::vector<double>> v = numbers(property, 16);
+  const std::optional<std::vector<double>> v = numbers(parameter(property), 16);
   if (!v) return result;
   for (std::size_t row = 0; row < 4; ++row)
     for (std::size_t column = 0; column < 4; ++column)
@@ -182,14 +228,11 @@ Mat4 SdlNode::matrix(std::string_view property) const {
   return Mat4{};
 }
 
-std::optional<std::uint32_t> SdlNode::id(std::string_view property) const {
-  const std::optional<double> value = number(property);
-  if (!value) return std::nullopt;
-  if (*value >= 0 && *value <= std::numeric_limits<std::uint32_t>::max() &&
-      std::floor(*value) == *value)
-    return static_cast<std::uint32_t>(*value);
-  error(property, "wanted a whole number from 0 to 4294967295, found {}", *value);
-  return std::nullopt;
+std::uint32_t SdlNode::id(std::string_view property) const {
+  const double value = number(property);
+  if (std::floor(value) == value) return static_cast<std::uint32_t>(value);
+  refuse(parameter(property), *use(property));
+  return 0;
 }
 
 std::optional<std::filesystem::path> SdlNode::file(std::string_view property) const {
@@ -198,28 +241,35 @@ std::optional<std::filesystem::path> SdlNode::file(std::string_view property) co
   std::filesystem::path path = reader_->folder / *name;
   std::error_code ignored;
   if (std::filesystem::is_regular_file(path, ignored)) return path;
-  error(property, "file {} does not exist", path.string());
+  reader_->broken.insert(prefix_);
+  // One missing file is one finding, however often it is used.
+  if (reader_->missed.insert(path.string()).second)
+    error(property, "file {} does not exist{}", path.string(), similar_name(path));
   return std::nullopt;
 }
 
-std::vector<double> SdlNode::list(std::string_view property, std::size_t multiple) const {
+std::optional<std::vector<double>> SdlNode::list(std::string_view property,
+                                                 std::size_t multiple) const {
+  parameter(property);
   const Property* found = use(property);
-  if (!found) return {};
   std::vector<double> result;
+  if (!found) return result;
   for (const std::string& word : words_of(*found)) {
     const std::optional<double> value = parse_sdl_number(word);
     if (!value) {
       error(property, "wanted numbers, found \"{}\"", word);
-      return {};
+      return std::nullopt;
     }
     result.push_back(*value);
   }
   if (result.size() % multiple == 0) return result;
   error(property, "wanted a multiple of {} numbers, found {}", multiple, result.size());
-  return {};
+  return std::nullopt;
 }
 
-std::optional<TextureRef> SdlNode::texture(std::string_view property, int width) const {
+std::optional<TextureRef> SdlNode::texture(std::string_view property) const {
+  const SdlParameter& wanted = parameter(property);
+  const int width = wanted.type == SdlType::scalar_input ? 1 : 3;
   const Property* found = use(property);
   if (!found) return std::nullopt;
   TextureRef ref;
@@ -244,21 +294,31 @@ std::optional<TextureRef> SdlNode::texture(std::string_view property, int width)
     return std::nullopt;
   }
   std::vector<float> values;
-  for (const std::string& word : words)
-    if (const std::optional<double> value = parse_sdl_number(word))
-      values.push_back(static_cast<float>(linear(*value, *gamma)));
-  if (values.size() == words.size() && (values.size() == 1 || values.size() == 3)) {
+  bool in_range = true;
+  for (const std::string& word : words) {
+    const std::optional<double> value = parse_sdl_number(word);
+    if (!value) continue;
+    in_range = in_range && wanted.range.contains(*value);
+    values.push_back(static_cast<float>(linear(*value, *gamma)));
+  }
+  if (in_range && values.size() == words.size() && (values.size() == 1 || values.size() == 3)) {
     ref.constant = values.size() == 1 ? Vec3{values[0], values[0], values[0]}
                                       : Vec3{values[0], values[1], values[2]};
     return as_wanted(ref);
   }
   const std::string wrong = joined(*found);
-  if (reader_->properties.first_below(fmt::format("scene.textures.{}", wrong)))
-    error(property,
-          "texture \"{}\" cannot be used here: it is defined below its use or has an error", wrong);
-  else
-    error(property, "wanted one number, three numbers or the name of a texture, found \"{}\"",
-          wrong);
+  const bool is_name = found->values.size() == 1 && !parse_sdl_number(wrong);
+  if (is_name && reader_->broken.contains("scene.textures." + wrong)) return std::nullopt;
+  if (is_name && reader_->properties.first_below(fmt::format("scene.textures.{}", wrong))) {
+    error(property, "texture \"{}\" cannot be used here: it is defined below its use{}", wrong,
+          reader_->conductors.contains(wrong) ? ", or is for metal2's fresnel only" : "");
+  } else {
+    std::vector<std::string_view> names;
+    for (const auto& [name, known] : reader_->textures)
+      names.emplace_back(name);
+    error(property, "wanted {}, found \"{}\"{}", wanted_text(wanted), wrong,
+          is_name ? did_you_mean(wrong, names) : "");
+  }
   return std::nullopt;
 }
 
@@ -266,16 +326,34 @@ void SdlNode::read_row(const NodeType& row, std::vector<TextureRef>& inputs,
                        std::vector<float>& values) const {
   for (const InputType& input : row.inputs) {
     const float d = input.default_value;
-    inputs.push_back(texture(input.name, input.width).value_or(TextureRef{{d, d, d}, -1}));
+    inputs.push_back(texture(input.name).value_or(TextureRef{{d, d, d}, -1}));
   }
-  for (const NumberType& type : row.numbers) {
-    const Property* found = use(type.name);
-    if (found && found->values.size() == 1 &&
-        (found->values[0] == "true" || found->values[0] == "false"))
-      values.push_back(found->values[0] == "true" ? 1.0f : 0.0f);
-    else
-      values.push_back(static_cast<float>(number(type.name, double{type.default_value})));
+  for (const NumberType& type : row.numbers)
+    values.push_back(parameter(type.name).type == SdlType::flag
+                         ? (flag(type.name) ? 1.0f : 0.0f)
+                         : static_cast<float>(number(type.name)));
+}
+
+std::vector<SdlParameter> header_parameters(const NodeType& type) {
+  std::vector<SdlParameter> parameters;
+  for (const InputType& input : type.inputs)
+    parameters.push_back({std::string(input.name),
+                          input.width == 1 ? SdlType::scalar_input : SdlType::color_input,
+                          fmt::format("{}", input.default_value), "", limit_of(input.name).range});
+  for (const NumberType& number : type.numbers) {
+    const InputLimit limit = limit_of(number.name);
+    parameters.push_back({std::string(number.name), limit.flag ? SdlType::flag : SdlType::number,
+                          fmt::format("{}", number.default_value), "",
+                          limit.flag ? NumberRange{} : limit.range});
   }
+  return parameters;
+}
+
+std::vector<SdlParameter> concatenated(std::vector<std::vector<SdlParameter>> lists) {
+  std::vector<SdlParameter> all;
+  for (std::vector<SdlParameter>& list : lists)
+    std::move(list.begin(), list.end(), std::back_inserter(all));
+  return all;
 }
 
 }  // namespace ds

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/scene/type_tables.h"
 
+#include "tracer/base/error.h"
 #include "tracer/kernels/all_nodes.h"
+#include "tracer/kernels/embedded.h"
 #include "tracer/kernels/lists.h"
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 namespace ds {
 namespace {
@@ -55,6 +58,51 @@ int find_named(std::span<const Row> rows, std::string_view name) {
 }
 
 }  // namespace
+
+InputLimit limit_of(std::string_view name) {
+  constexpr NumberRange k_not_negative{.least = 0};
+  constexpr NumberRange k_share{.least = 0, .most = 1};
+  static constexpr InputLimit k_limits[] = {
+      {"kd", k_not_negative},
+      {"ks", k_not_negative},
+      {"kr", k_not_negative},
+      {"kt", k_not_negative},
+      {"ka", k_not_negative},
+      {"d", k_not_negative},
+      {"index", k_not_negative},
+      {"n", k_not_negative},
+      {"k", k_not_negative},
+      {"interiorior", {.least = 0.01}},  // divided by each other
+      {"exteriorior", {.least = 0.01}},
+      {"uroughness", k_share},
+      {"vroughness", k_share},
+      {"amount", k_share},
+      {"octaves", {.least = 0, .most = 32}},  // a sample pays for each
+      {"multibounce", k_share, true},
+      {"doublesided", k_share, true},
+  };
+  const auto at = std::find_if(std::begin(k_limits), std::end(k_limits),
+                               [&](const InputLimit& limit) { return limit.name == name; });
+  return at == std::end(k_limits) ? InputLimit{name} : *at;
+}
+
+std::string header_comment(std::string_view folder, const NodeType& type) {
+  const std::string path = fmt::format("tracer/kernels/{}/{}.h", folder, type.kernel_prefix);
+  const auto files = std::span(k_embedded_files, k_embedded_file_count);
+  const auto file = std::find_if(files.begin(), files.end(),
+                                 [&](const EmbeddedFile& f) { return path == f.path; });
+  DS_ASSERT(file != files.end());
+  std::string_view text = file->text;
+  std::string comment;
+  for (bool licence = true; text.starts_with("//"); licence = false) {
+    std::string_view line = text.substr(2, text.find('\n') - 2);
+    text.remove_prefix(line.size() + 3);
+    if (licence) continue;
+    if (line.empty()) break;
+    comment += comment.empty() ? line.substr(1) : line;
+  }
+  return comment;
+}
 
 std::span<const NodeType> material_types() {
   static const std::span<const NodeType> rows = make_material_types();

@@ -1,10 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tracer/base/number_range.h"
+
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace ds {
+
+/// What a constant of this name is limited to, whatever type has it; by default any number is right.
+struct InputLimit {
+  std::string_view name;
+  NumberRange range{};
+  bool flag = false;  ///< 0 or 1
+};
+InputLimit limit_of(std::string_view name);
 
 /// An input that takes a constant or a texture. `width` is 1 (scalar) or 3 (colour).
 struct InputType {
@@ -32,6 +43,10 @@ struct NodeType {
 /// In the order of tracer/kernels/lists.h; Material::type and Texture::type index them.
 std::span<const NodeType> material_types();
 std::span<const NodeType> texture_types();
+
+/// What the kernel header of a type says of it first: the paragraph at its top, on one line.
+/// `folder` is "materials" or "textures".
+std::string header_comment(std::string_view folder, const NodeType& type);
 
 /// Row of the type, or -1.
 int find_type(std::span<const NodeType> types, std::string_view name);
