@@ -3,11 +3,13 @@
 
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
+#include "tracer/base/nearest.h"
 #include "tracer/base/text_lines.h"
 
 #include <algorithm>
 #include <charconv>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace ds {
@@ -71,6 +73,9 @@ class Parser {
       diagnostics_.add(here(),
                        "must be a class (name parent count) or a model (one word), got {} words",
                        words.size());
+      // Which models are of which class is not known from here on.
+      said_in_class_.reset();
+      miscounted_ = lost_class_ = true;
     }
   }
 
@@ -103,20 +108,31 @@ class Parser {
       if (const auto parent = class_by_name_.find(words[1]); parent != class_by_name_.end()) {
         added.parent = parent->second;
       } else {
-        diagnostics_.add(here(), "class {}: the parent must be an earlier class or 0, got {}",
-                         added.name, words[1]);
+        miss_parent(added.name, std::string(words[1]));
       }
     }
     said_in_class_ = parse_count(words[2]);
     if (!said_in_class_) {
       diagnostics_.add(here(), "class {}: the number of models must be a count, got {}", added.name,
                        words[2]);
+      miscounted_ = true;
     }
     const int index = static_cast<int>(result_.classes.size());
-    if (!class_by_name_.try_emplace(added.name, index).second) {
+    twice_ = !class_by_name_.try_emplace(added.name, index).second;
+    if (twice_) {
       diagnostics_.add(here(), "class {} stands twice", added.name);
     }
     result_.classes.push_back(std::move(added));
+  }
+
+  /// Once for each name, however many classes have it for a parent.
+  void miss_parent(const std::string& name, const std::string& parent) {
+    if (!missed_parents_.insert(parent).second) return;
+    std::vector<std::string_view> known;
+    for (const auto& [other, index] : class_by_name_)
+      known.emplace_back(other);
+    diagnostics_.add(here(), "class {}: the parent must be an earlier class or 0, got {}{}", name,
+                     parent, did_you_mean(parent, known));
   }
 
   /// Names become parts of a path ("vehicle/car") and of folders in exported datasets.
@@ -133,7 +149,7 @@ class Parser {
     }
     ModelClass& owner = result_.classes.back();
     const auto [first, is_new] = seen_.try_emplace(std::string(model), owner.name, line_);
-    if (!is_new) {
+    if (!is_new && !(twice_ && first->second.first == owner.name)) {
       diagnostics_.add(here(), "model {} stands in class {} and already in class {} (line {})",
                        model, owner.name, first->second.first, first->second.second);
     }
@@ -149,6 +165,7 @@ class Parser {
       diagnostics_.add({result_.file, class_line_, 0},
                        "class {} must hold {} models as it says, found {}", done.name,
                        *said_in_class_, done.models.size());
+      miscounted_ = true;
     }
   }
 
@@ -160,11 +177,13 @@ class Parser {
       return;
     }
     const SourcePlace place{result_.file, totals_line_, 0};
-    if (said_classes_ && *said_classes_ != static_cast<int>(result_.classes.size())) {
+    if (!lost_class_ && said_classes_ &&
+        *said_classes_ != static_cast<int>(result_.classes.size())) {
       diagnostics_.add(place, "must hold {} classes as it says, found {}", *said_classes_,
                        result_.classes.size());
     }
-    if (said_models_ && *said_models_ != result_.model_count) {
+    // The sum of what is miscounted is no finding of its own.
+    if (!miscounted_ && said_models_ && *said_models_ != result_.model_count) {
       diagnostics_.add(place, "must hold {} models as it says, found {}", *said_models_,
                        result_.model_count);
     }
@@ -176,6 +195,10 @@ class Parser {
   bool magic_seen_ = false;
   int totals_line_ = 0;  // 0: not read yet
   std::optional<int> said_classes_, said_models_;
+  bool miscounted_ = false;  // a class of its own count, or unknown
+  bool lost_class_ = false;  // a line that may have been a class
+  bool twice_ = false;       // the class that is read has a name that is taken
+  std::set<std::string> missed_parents_;
   int class_line_ = 0;
   std::optional<int> said_in_class_;
   std::map<std::string, int, std::less<>> class_by_name_;
@@ -201,17 +224,22 @@ void check_disjoint(const Classification& train, const Classification& test) {
     for (std::size_t i = 0; i < c.models.size(); ++i)
       lines.emplace(c.models[i], c.model_lines[i]);
   }
-  Diagnostics diagnostics(ErrorKind::asset);
+  std::size_t found = 0;
+  SourcePlace place;
+  std::string first;
   for (const ModelClass& c : test.classes) {
     for (std::size_t i = 0; i < c.models.size(); ++i) {
       const auto other = lines.find(c.models[i]);
-      if (other == lines.end()) continue;
-      diagnostics.add({test.file, c.model_lines[i], 0},
-                      "model {} must not be in train and test, found in {}:{} too", c.models[i],
-                      train.file, other->second);
+      if (other == lines.end() || ++found > 1) continue;
+      place = {test.file, c.model_lines[i], 0};
+      first = fmt::format("model {} must not be in train and test, found in {}:{} too", c.models[i],
+                          train.file, other->second);
     }
   }
-  diagnostics.throw_if_any();
+  if (found == 0) return;
+  // One file given for both says it of every model.
+  const std::string more = found > 1 ? fmt::format("; and {} more models", found - 1) : "";
+  fail(ErrorKind::asset, "{}: {}{}", to_string(place), first, more);
 }
 
 }  // namespace

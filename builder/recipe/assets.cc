@@ -4,6 +4,7 @@
 #include "builder/recipe/recipe.h"
 #include "manifests/json_text.h"
 #include "tracer/base/log.h"
+#include "tracer/base/nearest.h"
 
 #include <algorithm>
 #include <cctype>
@@ -216,6 +217,7 @@ class Finder {
         settings_.complain(*files, files_key_, "must not be given together with " + dir_key_);
       }
     } else if (!settings_.given(dir_key_) && !settings_.given(files_key_)) {
+      if (settings_.misspelt(files_key_)) return;
       settings_.complain(
           dir_key_, fmt::format("or {} must be given, for example with --set {}=FOLDER", files_key_,
                                 dir_key_));
@@ -227,9 +229,9 @@ class Finder {
     if (kind_.is_one(path)) {
       add(file, files_key_, path);
     } else {
-      settings_.complain(
-          file, files_key_,
-          fmt::format("must name {}, found none at {}", kind_.wanted, path.string()));
+      settings_.complain(file, files_key_,
+                         fmt::format("must name {}, found none at {}{}", kind_.wanted,
+                                     path.string(), similar_name(path)));
     }
   }
 
@@ -240,9 +242,9 @@ class Finder {
     const Listing listing = FolderWalk(kind_, recursive).list(folder, error);
     const std::string unused = unused_text(listing, kind_);
     if (error) {
-      settings_.complain(
-          dir, dir_key_,
-          fmt::format("must be a folder, found {}: {}", folder.string(), error.message()));
+      settings_.complain(dir, dir_key_,
+                         fmt::format("must be a folder, found {}: {}{}", folder.string(),
+                                     error.message(), similar_name(folder)));
     } else if (listing.found.empty()) {
       settings_.complain(dir, dir_key_,
                          fmt::format("must hold a {}, found none in {}{}{}", kind_.wanted_in_folder,

@@ -7,6 +7,7 @@
 #include "builder/recipe/settings.h"
 #include "manifests/concerns.h"
 #include "tracer/base/files.h"
+#include "tracer/base/nearest.h"
 
 #include <algorithm>
 #include <array>
@@ -99,7 +100,14 @@ std::optional<fs::path> class_file(Settings& settings, const std::string& key) {
   const fs::path file = settings.resolve(*value, text);
   std::error_code error;
   if (fs::is_regular_file(file, error)) return file;
-  settings.complain(*value, key, fmt::format("must name a file, found none at {}", file.string()));
+  const RecipeValue* dir = settings.find("models.dir");
+  // A models.dir that is none has its own finding.
+  const bool of_dir = text != *value->text();
+  if (of_dir && dir != nullptr && !fs::is_directory(settings.resolve(*dir), error))
+    return std::nullopt;
+  settings.complain(
+      *value, key,
+      fmt::format("must name a file, found none at {}{}", file.string(), similar_name(file)));
   return std::nullopt;
 }
 
@@ -244,7 +252,8 @@ std::string name_from_file(const Settings& settings, const fs::path& file) {
 Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrides) {
   std::error_code error;
   if (!fs::is_regular_file(file, error))
-    fail(ErrorKind::recipe, "{}: must be a recipe, found no file", file.string());
+    fail(ErrorKind::recipe, "{}: must be a recipe, found no file{}", file.string(),
+         similar_name(file));
   Diagnostics diagnostics(ErrorKind::recipe);
   RecipeValue::Table tree = parse_recipe_text(read_text_file(file), file.string(), diagnostics);
   const bool parsed = diagnostics.empty();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/recipe/settings.h"
 
+#include "tracer/base/nearest.h"
+
 #include <algorithm>
 #include <tuple>
 #include <utility>
@@ -77,6 +79,18 @@ bool is_no_path(const KeySpec& key, const RecipeValue& value) {
          (key.type == KeyType::path_list && value.array() != nullptr && value.array()->empty());
 }
 
+/// ", did you mean "orbit"?": of a key's literals.
+std::string choice_meant(const KeySpec& key, const RecipeValue& value) {
+  if (value.text() == nullptr) return "";
+  std::vector<std::string_view> literals;
+  for (std::string_view rest = key.choices; !rest.empty();) {
+    const std::size_t end = rest.find(" | ");
+    literals.push_back(rest.substr(0, end));
+    rest.remove_prefix(end == rest.npos ? rest.size() : end + 3);
+  }
+  return did_you_mean(to_toml(value), literals);
+}
+
 bool is_section(std::string_view name) {
   const auto keys = recipe_keys();
   return std::any_of(keys.begin(), keys.end(), [&](const KeySpec& key) {
@@ -113,7 +127,15 @@ Settings::Settings(const fs::path& file, RecipeValue::Table tree, Diagnostics& d
 void Settings::collect(const std::string& prefix, RecipeValue::Table& table,
                        std::vector<std::pair<std::string, RecipeValue>>& found) {
   for (auto& [part, value] : table) {
-    const std::string name = prefix.empty() ? part : prefix + "." + part;
+    std::string name = prefix.empty() ? part : prefix + "." + part;
+    if (prefix.empty() && value.table() != nullptr && !is_section(name)) {
+      const std::string meant = section_meant(name, value);
+      // An empty table stands for the section in what is to be checked, to be reported in its place.
+      if (meant != name)
+        found.emplace_back(name, RecipeValue{RecipeValue::Table{}, value.place, value.from_set});
+      if (meant.empty()) continue;
+      name = meant;
+    }
     // An unknown table too, so that its keys can be compared with known ones; an empty one stays to
     // be reported.
     const bool unknown = find_key(name) == nullptr && !is_section(name);
@@ -132,19 +154,50 @@ void Settings::check(const std::string& name, RecipeValue value) {
       complain(value, name, fmt::format("must be a table of keys, got {}", found_text(value)));
       return;
     }
-    const std::string_view nearest = nearest_key(name);
-    complain(value, name,
-             nearest.empty() ? "is no key of a recipe"
-                             : fmt::format("is no key of a recipe, did you mean {}?", nearest));
+    complain_of_unknown(name, value);
     return;
   }
   if (const RecipeValue* unfit = unfit_part(*key, value)) {
     complain(*unfit, name,
-             fmt::format("must be {}, got {}", wanted_text(*key), found_text(*unfit)));
+             fmt::format("must be {}, got {}{}", wanted_text(*key), found_text(*unfit),
+                         choice_meant(*key, *unfit)));
     wrong_.emplace(name, std::move(value));
     return;
   }
   if (!is_no_path(*key, value)) values_.emplace(name, std::move(value));
+}
+
+void Settings::complain_of_unknown(const std::string& name, const RecipeValue& value) {
+  if (value.table() != nullptr && name.find('.') == name.npos) {
+    complain(value, name, "is no section of a recipe" + known_words(name, recipe_sections()));
+    return;
+  }
+  std::string help;
+  if (const std::string_view meant = nearest_key(name); !meant.empty()) {
+    meant_.emplace(meant);
+    help = fmt::format(", did you mean {}?", meant);
+  } else {
+    const std::string section = name.substr(0, name.find('.'));
+    std::vector<std::string_view> keys;
+    for (const KeySpec& key : recipe_keys())
+      if (key.name.starts_with(section + ".")) keys.push_back(key.name.substr(section.size() + 1));
+    if (!keys.empty()) help = fmt::format("; {} has {}", section, fmt::join(keys, ", "));
+  }
+  complain(value, name, "is no key of a recipe" + help);
+}
+
+/// The section that one which is none was most likely meant to be, and as whose its keys are read;
+/// itself where its keys tell where they belong, "" where nothing does.
+std::string Settings::section_meant(const std::string& name, const RecipeValue& table) {
+  const std::vector<std::string_view> sections = recipe_sections();
+  const std::string_view meant = nearest(name, sections);
+  const auto known_key = [&](const auto& key) {
+    return !nearest_key(name + "." + key.first).empty();
+  };
+  const RecipeValue::Table& keys = *table.table();
+  // [lens] fov_deg = 40: each key says where it belongs.
+  if (meant.empty() && std::any_of(keys.begin(), keys.end(), known_key)) return name;
+  return std::string(meant);
 }
 
 /// A key that nothing will look at is an error, unless --set has just chosen something else than
@@ -155,7 +208,7 @@ void Settings::check_effects() {
     const auto value = values_.find(key.name);
     if (value == values_.end() || applies(key)) continue;
     const std::string_view chooser = condition_of(key).key;
-    if (wrong_.contains(chooser)) continue;
+    if (wrong_.contains(chooser) || misspelt(chooser)) continue;
     if (value->second.from_set || !given_by_set(chooser)) {
       complain(value->second, key.name,
                fmt::format("has no effect with {} = {}, only with {}", chooser, literal(chooser),
@@ -244,6 +297,7 @@ void Settings::complain(std::string_view key, std::string_view message) const {
     if (const auto at = values->find(key); at != values->end())
       return complain(at->second, key, message);
   }
+  if (misspelt(key)) return;
   diagnostics_.add({file_, 0, 0}, "{} {}", key, message);
 }
 

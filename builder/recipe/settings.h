@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,8 @@ class Settings {
   bool given_by_set(std::string_view key) const;
   /// The value given or the default; nullptr where there is neither.
   const RecipeValue* find(std::string_view key) const;
+  /// Whether a misspelt key was most likely meant for this one.
+  bool misspelt(std::string_view key) const { return meant_.contains(key); }
   /// As if the key were not given.
   void unset(std::string_view key);
   /// Whether the key's only_with holds, so that it has an effect.
@@ -53,7 +56,7 @@ class Settings {
   /// A finding about a key (or an element of its list) at the place of `value`.
   void complain(const RecipeValue& value, std::string_view key, std::string_view message) const;
   /// A finding about a key, at its value's place, or about the recipe as a whole where the key is
-  /// not given.
+  /// not given; none where it is misspelt.
   void complain(std::string_view key, std::string_view message) const;
   Diagnostics& diagnostics() const { return diagnostics_; }
 
@@ -61,11 +64,16 @@ class Settings {
   void collect(const std::string& prefix, RecipeValue::Table& table,
                std::vector<std::pair<std::string, RecipeValue>>& found);
   void check(const std::string& name, RecipeValue value);
+  void complain_of_unknown(const std::string& name, const RecipeValue& value);
+  std::string section_meant(const std::string& name, const RecipeValue& table);
   void check_effects();
 
   std::string file_;
   std::filesystem::path folder_;
   std::map<std::string, RecipeValue, std::less<>> values_, wrong_;
+  /// Keys that a misspelt one was most likely meant for: what is amiss for want of them is no
+  /// finding of its own.
+  std::set<std::string, std::less<>> meant_;
   std::map<std::string, RecipeValue, std::less<>> defaults_;
   Diagnostics& diagnostics_;
 };

@@ -121,6 +121,7 @@ TEST(RecipeKeys, RangesSayWhatTheyMean) {
   EXPECT_FALSE(closed.contains(2.5));
   EXPECT_EQ(closed.text(), "in [1, 2]");
   EXPECT_EQ((KeyRange{.least = 0}.text()), ">= 0");
+  EXPECT_EQ((KeyRange{.most = 3}.text()), "<= 3");
   const KeyRange any;
   EXPECT_EQ(any.text(), "");
   EXPECT_FALSE(any.contains(std::numeric_limits<double>::infinity()));

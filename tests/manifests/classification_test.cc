@@ -68,6 +68,17 @@ TEST(Classification, NamesTheLineOfEachWrongCount) {
             "a.cla:7: class b must hold 1 models as it says, found 2");
 }
 
+// One model too few or too many, one line that is none, one class pasted twice.
+TEST(Classification, SaysOneMistakeOnce) {
+  EXPECT_EQ(findings("PSB 1\n2 3\na 0 2\n1\nb 0 1\n2\n"),
+            "a.cla:3: class a must hold 2 models as it says, found 1");
+  EXPECT_EQ(findings("PSB 1\n2 2\na 0 1\n1\nb 1\n2\n"),
+            "a.cla:5: must be a class (name parent count) or a model (one word), got 2 words");
+  EXPECT_EQ(findings("PSB 1\n2 2\na 0 1\n1\nb 0 one\n2\n"),
+            "a.cla:5: class b: the number of models must be a count, got one");
+  EXPECT_EQ(findings("PSB 1\n2 4\na 0 2\n1\n2\na 0 2\n1\n2\n"), "a.cla:6: class a stands twice");
+}
+
 TEST(Classification, ComparesTheHeaderWithWhatFollows) {
   EXPECT_EQ(findings("PSB 1\n2 5\n\na 0 1\n1\n"),
             "a.cla:2: must hold 2 classes as it says, found 1\n"
@@ -79,6 +90,10 @@ TEST(Classification, RefusesAParentThatIsNoEarlierClass) {
             "a.cla:3: class a: the parent must be an earlier class or 0, got b");
   EXPECT_EQ(findings("PSB 1\n1 0\na a 0\n"),
             "a.cla:3: class a: the parent must be an earlier class or 0, got a");
+  EXPECT_EQ(
+      findings("PSB 1\n4 0\nvehicle 0 0\ncar vehicel 0\nbus vehicel 0\nvan vehicel 0\n"),
+      "a.cla:4: class car: the parent must be an earlier class or 0, got vehicel, did you mean "
+      "vehicle?");
 }
 
 TEST(Classification, RefusesAModelInTwoClassesOrTwiceInOne) {
@@ -133,10 +148,10 @@ TEST(Labels, RefusesAModelInTrainAndTest) {
     Labels labels(train, test);
     FAIL() << "no error";
   } catch (const Error& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "test.cla:4: model mug-2 must not be in train and test, found in train.cla:12 too\n"
-        "test.cla:5: model 1510 must not be in train and test, found in train.cla:7 too");
+    EXPECT_STREQ(error.what(),
+                 "test.cla:4: model mug-2 must not be in train and test, found in train.cla:12 "
+                 "too; and 1 more "
+                 "models");
   }
 }
 
