@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ds {
@@ -32,6 +33,8 @@ struct Arguments {
   bool rehash = false;
   bool adopt = false;
   bool copy = false;
+  bool verbose = false;
+  std::string topic, topic_name;  ///< of help
 
   DatasetRequest request() const { return {target, overrides, output_folder, store_folder, adopt}; }
 };
@@ -40,6 +43,7 @@ struct Arguments {
 enum class Option {
   target,
   optional_target_and_image,
+  topic,
   overrides,
   output_folder,
   store_folder,
@@ -51,6 +55,7 @@ enum class Option {
   rehash,
   adopt,
   copy,
+  verbose,
   explain,
   strict,
   shard,
@@ -74,6 +79,11 @@ struct Verb {
 
 /// In the order `--help` shows them.
 const std::vector<Verb>& verbs();
+
+/// What `dsbuild help TOPIC` knows beside the verbs.
+std::vector<std::string_view> help_topics();
+/// The help of a verb, or of the whole command for "".
+std::string help_of(std::string_view verb);
 
 /// Runs the verb that the command line names. Returns the exit code; throws Error.
 int run_command_line(std::span<const char* const> arguments);

@@ -98,7 +98,7 @@ void warn_of_mended(const Plan& plan) {
 }
 
 int dry_run(const Arguments& arguments, const Plan& plan) {
-  print_plan(arguments.json ? Stream::people : Stream::result, plan);
+  print_plan(arguments.json ? Stream::people : Stream::result, plan, arguments.verbose);
   const PlanCounts counts = count(plan);
   if (arguments.json)
     print_json({{"images", counts.images},
@@ -140,7 +140,8 @@ int run_build(const Arguments& arguments) {
   Inputs& inputs = *sole.inputs;
   const Plan& plan = sole.plan;
   warn_of_mended(plan);
-  if (arguments.explain) print_plan(arguments.json ? Stream::people : Stream::report, plan);
+  if (arguments.explain)
+    print_plan(arguments.json ? Stream::people : Stream::report, plan, arguments.verbose);
 
   const RendererFactory factory = [&] {
     TracerOptions options;

@@ -4,6 +4,7 @@
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/verbs.h"
 #include "tracer/base/canonical.h"
+#include "tracer/base/nearest.h"
 #include "tracer/base/streams.h"
 
 #include <algorithm>
@@ -43,8 +44,13 @@ const PlannedImage& find_image(const Plan& plan, const Dataset& dataset,
     for (const PlannedFile& planned : image.files)
       if (planned.output.path == wanted || folder / planned.output.path == file) return image;
   }
-  fail(ErrorKind::usage, "{}: the dataset has no such image; its first is {}", wanted,
-       plan.images.empty() ? "none" : plan.images.front().spec.id);
+  std::vector<std::string_view> ids;
+  for (const PlannedImage& image : plan.images)
+    ids.emplace_back(image.spec.id);
+  const std::string known = known_words(wanted, ids);
+  fail(
+      ErrorKind::usage, "{}: the dataset has no such image{}", wanted,
+      known.empty() ? fmt::format("; its first is {}", ids.empty() ? "none" : ids.front()) : known);
 }
 
 nlohmann::json to_json(const std::string& part, const PropertyChange& change) {
@@ -70,6 +76,20 @@ void print_changes(const std::vector<std::pair<std::string, PropertyChange>>& ch
     say(Stream::result, "  {}: {}\n", part, to_string(change));
     print_long_value(change, find);
   }
+}
+
+/// ": forced; ...": the reasons that are not among the changes, which are told line by line.
+std::string other_reasons(const PlannedImage& image,
+                          const std::vector<std::pair<std::string, PropertyChange>>& changes) {
+  std::string text;
+  for (const std::string& reason : image.reasons) {
+    const bool told = std::any_of(changes.begin(), changes.end(), [&](const auto& change) {
+      return reason.starts_with(change.first + " changed: ");
+    });
+    const bool counted = !changes.empty() && reason.starts_with("and ");
+    if (!told && !counted) text += (text.empty() ? ": " : "; ") + reason;
+  }
+  return text;
 }
 
 }  // namespace
@@ -109,7 +129,7 @@ int run_explain(const Arguments& arguments) {
     return 0;
   }
   if (image.stale())
-    say(Stream::result, "{}\n", line_of(image));
+    say(Stream::result, "{}: {}{}\n", image.spec.id, step_of(image), other_reasons(image, changes));
   else
     say(Stream::result, "{}: up to date\n", image.spec.id);
   print_changes(changes, find);

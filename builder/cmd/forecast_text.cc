@@ -20,17 +20,18 @@ std::string error_text(const PairForecast& pair) {
   return pair.error > 0 ? fmt::format("{:.2g} %", 100 * pair.error) : "?";
 }
 
-nlohmann::json to_json(const PairForecast& pair) {
+nlohmann::json to_json(const PairForecast& pair, bool by_error) {
   nlohmann::json object{{"environment", pair.environment},
                         {"material", pair.material},
                         {"images", pair.images},
                         {"made", pair.made},
                         {"spp", pair.spp},
                         {"traced_spp", pair.traced_spp},
-                        {"error", nullptr},
+                        {"engine_error", nullptr},
+                        {"relative_error", nullptr},
                         {"capped", pair.capped},
                         {"seconds_an_image", pair.seconds_an_image}};
-  if (pair.spp > 0) object["error"] = pair.error;
+  if (pair.spp > 0) object[by_error ? "engine_error" : "relative_error"] = pair.error;
   return object;
 }
 
@@ -66,12 +67,14 @@ std::string pairs_text(const Forecast& forecast) {
     environment = std::max(environment, pair.environment.size());
     material = std::max(material, pair.material.size());
   }
+  // Of the developed picture with 97.5 % confidence, or the linear one's as the manifest has it.
+  const char* error = forecast.by_error ? "engine.error" : "relative_error";
   std::string text =
-      fmt::format("{:{}}  {:{}}  {:>9}  {:>8}  {:>8}  {:>8}  {:>10}\n", "environment", environment,
-                  "material", material, "to make", "samples", "to trace", "error", "s an image");
+      fmt::format("{:{}}  {:{}}  {:>9}  {:>8}  {:>8}  {:>14}  {:>10}\n", "environment", environment,
+                  "material", material, "to make", "samples", "to trace", error, "s an image");
   for (const PairForecast& pair : forecast.pairs)
-    text += fmt::format("{:{}}  {:{}}  {:>9}  {:>8}  {:>8}  {:>8}  {:>10.3g}{}\n", pair.environment,
-                        environment, pair.material, material,
+    text += fmt::format("{:{}}  {:{}}  {:>9}  {:>8}  {:>8}  {:>14}  {:>10.3g}{}\n",
+                        pair.environment, environment, pair.material, material,
                         fmt::format("{}/{}", pair.made, pair.images), samples_text(pair.spp),
                         samples_text(pair.traced_spp), error_text(pair), pair.seconds_an_image,
                         capped_text(pair.capped));
@@ -85,7 +88,7 @@ nlohmann::json interval_json(const Interval& interval) {
 nlohmann::json to_json(const Forecast& forecast) {
   nlohmann::json pairs = nlohmann::json::array();
   for (const PairForecast& pair : forecast.pairs)
-    pairs.push_back(to_json(pair));
+    pairs.push_back(to_json(pair, forecast.by_error));
   return {{"seconds", interval_json(forecast.seconds)},
           {"bytes", interval_json(forecast.bytes)},
           {"bytes_by_kind", forecast.bytes_by_kind},

@@ -96,10 +96,10 @@ int max_spp_of(const Recipe& recipe) {
 
 Answer answer_budget(double seconds, int max_spp, const std::vector<ProbedWork>& work) {
   const std::optional<Bought> bought = error_for(work, seconds, max_spp);
-  if (!bought) return {"no error can be had for this budget: the least samples take longer"};
+  if (!bought) return {"no engine.error can be had for this budget: the least samples take longer"};
   const Interval& error = bought->error;
-  Answer answer{fmt::format("the budget buys an error of {} ({} to {})", percent(error.value),
-                            percent(error.low), percent(error.high)),
+  Answer answer{fmt::format("the budget buys an engine.error of {} ({} to {})",
+                            percent(error.value), percent(error.low), percent(error.high)),
                 bought};
   answer.forecast = forecast(work, {error.value, 0, double(max_spp)});
   if (!bought->capped) return answer;
@@ -129,7 +129,7 @@ Answer answer(const Wish& wish, const Recipe& recipe, const std::vector<ProbedWo
     return foretold(fmt::format("{} samples a pixel", recipe.engine.spp),
                     {std::nullopt, recipe.engine.spp});
   const double error = wish.error ? *wish.error : recipe.engine.target->error;
-  return foretold(fmt::format("every picture to an error of {} (engine.error), with at most {} "
+  return foretold(fmt::format("every picture to an engine.error of {}, with at most {} "
                               "samples a pixel (engine.max_spp)",
                               percent(error), max_spp),
                   {error, 0, double(max_spp)});
@@ -139,11 +139,11 @@ nlohmann::json answer_json(const Answer& answer, const Calibration& calibration)
   nlohmann::json object{{"device", calibration.device}, {"measured", calibration.measured}};
   if (answer.forecast) object.update(to_json(*answer.forecast));
   if (answer.bought) {
-    object["error"] = interval_json(answer.bought->error);
+    object["engine_error"] = interval_json(answer.bought->error);
     object["capped"] = answer.bought->capped;
   }
   if (answer.more)
-    object["more"] = {{"max_spp", answer.more->max_spp}, {"error", answer.more->error}};
+    object["more"] = {{"max_spp", answer.more->max_spp}, {"engine_error", answer.more->error}};
   return object;
 }
 
@@ -169,7 +169,7 @@ int run_plan(const Arguments& arguments) {
   const PlanCounts counts = count(plan);
   nlohmann::json object = arguments.json ? plan_json(plan, counts) : nlohmann::json();
   if (!arguments.json) {
-    if (!wish.any) print_plan(Stream::result, plan);
+    if (!wish.any) print_plan(Stream::result, plan, arguments.verbose);
     say(Stream::result, "{}\n", summary(counts));
     print_manifest_line(plan);
   }

@@ -77,24 +77,73 @@ std::string line_of(const PlannedImage& image) {
   return fmt::format("{}: {}: {}", image.spec.id, step_of(image), fmt::join(image.reasons, "; "));
 }
 
-void print_plan(Stream to, const Plan& plan) {
-  std::map<std::string, std::vector<std::string>> failures;
+namespace {
+
+/// The reasons with the image's own name taken out of the paths in them, so that images that are
+/// stale for one reason are found to be so.
+std::string common_reason(const PlannedImage& image) {
+  std::string text = fmt::format("{}: {}", step_of(image), fmt::join(image.reasons, "; "));
+  const std::string own = "images/" + image.spec.id;
+  for (std::size_t at = text.find(own); at != text.npos; at = text.find(own, at + 1))
+    text.replace(at, own.size(), "images/*");
+  return text;
+}
+
+/// What stands in one line: names of images or files, and what is to be said of them.
+class Groups {
+ public:
+  void add(const std::string& key, const std::string& name, std::string alone) {
+    const auto [at, is_new] = index_.try_emplace(key, groups_.size());
+    if (is_new) groups_.push_back({key, {}, std::move(alone)});
+    groups_[at->second].names.push_back(name);
+  }
+  void print(Stream to, bool all_names) const {
+    for (const Group& group : groups_) {
+      if (group.names.size() == 1) {
+        say(to, "{}\n", group.alone);
+        continue;
+      }
+      say(to, "{} and {} more: {}\n", group.names.front(), group.names.size() - 1, group.key);
+      if (!all_names) continue;
+      for (const std::string& name : group.names)
+        say(to, "  {}\n", name);
+    }
+  }
+
+ private:
+  struct Group {
+    std::string key;
+    std::vector<std::string> names;
+    std::string alone;  ///< the line where it is one name
+  };
+  std::map<std::string, std::size_t, std::less<>> index_;
+  std::vector<Group> groups_;  ///< in the order of their first names
+};
+
+}  // namespace
+
+void print_plan(Stream to, const Plan& plan, bool all_names) {
+  Groups stale, removed, failed;
   for (const PlannedImage& image : plan.images) {
     if (image.elsewhere) continue;
-    if (image.error) failures[image.error->what()].push_back(image.spec.id);
-    if (image.stale()) say(to, "{}\n", line_of(image));
+    const std::string& id = image.spec.id;
+    if (image.stale()) stale.add(common_reason(image), id, line_of(image));
+    if (!image.error) continue;
+    const std::string why = fmt::format("cannot be made: {}", image.error->what());
+    failed.add(why, id, id + ": " + why);
   }
   std::set<std::string> refused;
   for (const PlannedImage& image : plan.images)
     if (image.refused)
       for (const OutputFile& output : image.keys.outputs)
         refused.insert(output.path);
-  for (const std::string& path : plan.to_remove)
-    say(to, "{}: remove: {}\n", path,
-        refused.contains(path) ? "its picture is refused" : "no image of the recipe has it");
-  for (const auto& [why, ids] : failures)
-    say(to, "{}{}: cannot be made: {}\n", ids.front(),
-        ids.size() > 1 ? fmt::format(" and {} more", ids.size() - 1) : "", why);
+  for (const std::string& path : plan.to_remove) {
+    const std::string what = refused.contains(path) ? "remove: its picture is refused"
+                                                    : "remove: no image of the recipe has it";
+    removed.add(what, path, path + ": " + what);
+  }
+  for (const Groups* groups : {&stale, &removed, &failed})
+    groups->print(to, all_names);
 }
 
 void print_json(const nlohmann::json& object) {

@@ -45,8 +45,9 @@ std::string line_of(const PlannedImage& image);
 /// What it needs: "trace", "develop", "place"; empty for an image that is up to date.
 const char* step_of(const PlannedImage& image);
 
-/// Lists what of the shard is stale or fails, and what is to be removed.
-void print_plan(Stream to, const Plan& plan);
+/// Lists what of the shard is stale or fails on the stream, and what is to be removed: images with
+/// one reason in one line, and under it, with `all_names`, the name of each.
+void print_plan(Stream to, const Plan& plan, bool all_names = false);
 
 /// Prints one JSON object as the last line of standard output. Text that is no UTF-8 is mended with
 /// U+FFFD.

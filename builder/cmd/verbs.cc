@@ -9,11 +9,12 @@ const std::vector<Verb>& verbs() {
       {"build",
        "make every image of a recipe that is not there yet",
        {target, overrides, output_folder, store_folder, shard, device, dry_run, keep_going, force,
-        rehash, adopt, copy, explain, strict, json},
+        rehash, adopt, copy, explain, verbose, strict, json},
        run_build},
       {"plan",
        "list the images a build would make, and why; or foretell its time and disk",
-       {target, overrides, output_folder, store_folder, rehash, adopt, forecast, device, json},
+       {target, overrides, output_folder, store_folder, rehash, adopt, forecast, device, verbose,
+        json},
        run_plan},
       {"status",
        "say how much of a dataset is up to date",
@@ -40,6 +41,10 @@ const std::vector<Verb>& verbs() {
        {target, overrides, output_folder, store_folder, json},
        run_log},
       {"devices", "list the OpenCL devices", {json}, run_devices},
+      {"help",
+       "tell a verb's options, the keys of a recipe or what a scene may hold",
+       {topic},
+       run_help},
   };
   return table;
 }

@@ -297,6 +297,7 @@ std::vector<ProbedWork> join(const std::vector<PairWork>& work, const Calibratio
 
 Forecast forecast(const std::vector<ProbedWork>& work, const Samples& samples) {
   Forecast out;
+  out.by_error = samples.error.has_value();
   Totals totals;
   for (const ProbedWork& pair : work)
     out.pairs.push_back(forecast_pair(pair, samples, totals, out.bytes_by_kind));

@@ -54,6 +54,7 @@ struct Forecast {
   Interval seconds;
   Interval bytes;  ///< new in the store; files in the dataset's folder are links to it
   std::map<std::string, double> bytes_by_kind;
+  bool by_error = false;  ///< pairs' errors are engine.error's, else the manifest's relative_error
   std::vector<PairForecast> pairs;
 };
 

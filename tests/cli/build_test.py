@@ -101,14 +101,15 @@ class BuildTest(TinyCase):
 
     def test_explain_says_why(self):
         run = self.run_it("build", self.recipe, "-o", self.out, "--explain")
-        self.assertIn("box.off/0: trace: new", run.out)
+        self.assertIn("box.off/0 and 7 more: trace: new\n", run.out)
         image = self.out / "images/box.off/0.png"
         self.assertIn("box.off/0: up to date", self.run_it("explain", image).out)
         self.edit("recipe.toml", "fov_deg = 49", "fov_deg = 50")
         for arguments in ([image], [self.out, "box.off/0"], [self.recipe, "-o", self.out, "box.off/0"]):
             run = self.run_it("explain", *arguments)
             self.assertEqual(run.code, 0, run)
-            self.assertIn("camera: fov_deg: 49 -> 50", run.out)
+            self.assertEqual(run.out.count("fov_deg: 49 -> 50"), 1, run)
+            self.assertIn("box.off/0: trace\n  camera: fov_deg: 49 -> 50\n", run.out)
         changes = self.run_it("explain", image, "--json").json["changes"]
         self.assertEqual([(c["part"], c["name"]) for c in changes], [("camera", "fov_deg")])
 

@@ -96,7 +96,7 @@ class ForecastTest(TinyCase):
             self.assertGreater(told["seconds"]["value"], 0)
             self.assertEqual(set(told["bytes_by_kind"]), {"depth", "mask"})
             for pair in told["pairs"]:
-                self.assertEqual((pair["spp"], pair["error"]), (0, None))
+                self.assertEqual((pair["spp"], pair["engine_error"], pair["relative_error"]), (0, None, None))
         self.assertIn("no samples, as outputs.image = false", self.plan("--time", *geometry).out)
         for question in (("--error", "0.02"), ("--budget", "8h")):
             run = self.plan(*question, *geometry, code=2)
@@ -112,12 +112,12 @@ class ForecastTest(TinyCase):
         self.assertGreater(near["seconds"]["value"], far["seconds"]["value"])
         for pair in near["pairs"]:
             self.assertGreater(pair["spp"], 16)
-            self.assertAlmostEqual(pair["error"], 0.001, delta=1e-7)
+            self.assertAlmostEqual(pair["engine_error"], 0.001, delta=1e-7)
             self.assertEqual(pair["capped"], 0)
         for pair in far["pairs"]:
             self.assertEqual(pair["spp"], 16, "engine.error's first step is enough")
         bought = self.forecast("--budget", f"{near['seconds']['value']:.6f}s", *many)
-        self.assertAlmostEqual(bought["error"]["value"], 0.001, delta=0.00005)
+        self.assertAlmostEqual(bought["engine_error"]["value"], 0.001, delta=0.00005)
         self.assertFalse(bought["capped"])
 
     def test_max_spp_bounds_what_an_error_takes(self):
@@ -126,34 +126,34 @@ class ForecastTest(TinyCase):
             told = self.forecast("--error", "0.00001", *settings)
             for pair in told["pairs"]:
                 self.assertEqual((pair["spp"], pair["capped"]), (most, 1))
-                self.assertGreater(pair["error"], 0.00001)
+                self.assertGreater(pair["engine_error"], 0.00001)
             out = self.plan("--error", "0.00001", *settings).out
             self.assertIn(f"with at most {most} samples a pixel (engine.max_spp)", out)
             self.assertEqual(out.count("  capped\n"), len(told["pairs"]))
             bought = self.forecast("--budget", "8h", *settings)
             self.assertTrue(bought["capped"])
-            worst = max(pair["error"] for pair in told["pairs"])
-            self.assertGreater(bought["error"]["value"], 0.9 * worst)
+            worst = max(pair["engine_error"] for pair in told["pairs"])
+            self.assertGreater(bought["engine_error"]["value"], 0.9 * worst)
             for pair in bought["pairs"]:
                 self.assertLessEqual(pair["spp"], most + 1e-6)
                 self.assertEqual(pair["capped"], 0)
             self.assertGreater(bought["more"]["max_spp"], most)
-            self.assertLess(bought["more"]["error"], bought["error"]["value"])
+            self.assertLess(bought["more"]["engine_error"], bought["engine_error"]["value"])
             self.assertRegex(self.plan("--budget", "8h", *settings).out,
                              rf"the least with engine.max_spp = {most} \(\d+ would buy [\d.e-]+ %\), on ")
 
     def test_text(self):
         out = self.plan("--error", "0.05").out
         same = self.plan("--time", "--set", "engine.error=0.05").out
-        self.assertIn("every picture to an error of 5 %", same)
-        self.assertIn("every picture to an error of 5 %", out)
+        self.assertIn("every picture to an engine.error of 5 %", same)
+        self.assertIn("every picture to an engine.error of 5 %", out)
         self.assertRegex(out, r"time about \d+:\d\d \(\d+:\d\d to \d+:\d\d\)")
         self.assertRegex(out, r"disk [\d.]+ kB")
-        self.assertRegex(self.plan("--budget", "1h").out, r"the budget buys an error of [\d.e-]+ % \(")
+        self.assertRegex(self.plan("--budget", "1h").out, r"the budget buys an engine.error of [\d.e-]+ % \(")
 
     def test_a_budget_that_buys_nothing(self):
         run = self.plan("--budget", "0.000001s", code=1)
-        self.assertIn("no error can be had for this budget", run.out)
+        self.assertIn("no engine.error can be had for this budget", run.out)
 
 
 if __name__ == "__main__":

@@ -93,16 +93,23 @@ class ShardsTest(TinyCase):
         self.assert_counts(self.build(*VIEWS, "--store", self.folder / "store"), built=IMAGES, traced=0, developed=0)
         self.assert_whole()
 
+    @staticmethod
+    def named(text):
+        """Images of a plan told with -v: one alone in its line, those with one reason below it."""
+        lines = text.splitlines()
+        return [line.strip() for line in lines if line.startswith("  ")] + [
+            line.split(":")[0] for line in lines if ": trace: new" in line and " more: " not in line]
+
     def test_dry_run_and_explain_tell_of_the_share(self):
         stale = []
         for number in range(1, SHARDS + 1):
-            run = self.run_it("build", self.recipe, "-o", self.out, *VIEWS, "--shard", f"{number}/{SHARDS}", "-n")
-            stale += [line for line in run.out.splitlines() if ": trace: new" in line]
+            run = self.run_it("build", self.recipe, "-o", self.out, *VIEWS, "--shard", f"{number}/{SHARDS}", "-nv")
+            stale += self.named(run.out)
         self.assertEqual(len(stale), IMAGES)
         self.assertEqual(len(set(stale)), IMAGES)
         self.assertFalse(self.out.exists())
-        run = self.run_it("build", self.recipe, "-o", self.out, *VIEWS, "--shard", f"1/{SHARDS}", "--explain")
-        self.assertEqual({line.split(":")[0] for line in run.out.splitlines() if ": trace: new" in line}, self.listed())
+        run = self.run_it("build", self.recipe, "-o", self.out, *VIEWS, "--shard", f"1/{SHARDS}", "--explain", "-v")
+        self.assertEqual(set(self.named(run.out)), self.listed())
         self.assertIn(f"tiny: {len(self.listed())} images: {len(self.listed())} built, 0 reused", run.out)
         self.assertIn(f"[{len(self.listed())}/{len(self.listed())}] 100% ", run.err)
 
