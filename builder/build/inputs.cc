@@ -9,6 +9,19 @@
 
 namespace ds {
 
+namespace {
+
+/// Stands in the database beside what was mended.
+constexpr const char* k_has_uvs = "has_uvs";
+
+MendedDamage damage_and_facts(const MeshReport& report) {
+  MendedDamage known = mended_damage(report);
+  if (report.has_uvs) known.emplace_back(k_has_uvs, 1);
+  return known;
+}
+
+}  // namespace
+
 template <typename T, typename Reader>
 const T& Inputs::once(std::map<std::filesystem::path, Read<T>>& known,
                       const std::filesystem::path& path, const Reader& reader) {
@@ -38,7 +51,7 @@ KnownModel Inputs::look_at_model(const std::filesystem::path& file) {
   const bool new_model = !known;
   if (!known) {
     const Model model = read_model(file);
-    known = KnownModel{geometry_hash(model.mesh), mended_damage(model.report)};
+    known = KnownModel{geometry_hash(model.mesh), damage_and_facts(model.report)};
   }
   if (new_content || new_model)
     new_models_.push_back(
@@ -46,8 +59,19 @@ KnownModel Inputs::look_at_model(const std::filesystem::path& file) {
   return *known;
 }
 
-const KnownModel& Inputs::model(const std::filesystem::path& file) {
-  return once(models_, file, [this](const auto& path) { return look_at_model(path); });
+const Inputs::ModelFacts& Inputs::model(const std::filesystem::path& file) {
+  return once(models_, file, [this](const auto& path) {
+    const KnownModel known = look_at_model(path);
+    ModelFacts facts;
+    facts.geometry = known.geometry;
+    for (const auto& [name, count] : known.damage) {
+      if (name == k_has_uvs)
+        facts.has_uvs = true;
+      else
+        facts.damage.emplace_back(name, count);
+    }
+    return facts;
+  });
 }
 
 Mesh Inputs::model_mesh(const std::filesystem::path& file, const NormaliseOptions& options) {

@@ -37,6 +37,8 @@ class Inputs {
   const MendedDamage& model_damage(const std::filesystem::path& file) { return model(file).damage; }
   /// The ball around the model as it is normalised. Reads it where the database does not know it.
   const Sphere& model_sphere(const std::filesystem::path& file, const NormaliseOptions& options);
+  /// Whether its mesh has uv; throws likewise.
+  bool model_has_uvs(const std::filesystem::path& file) { return model(file).has_uvs; }
   /// Reads and normalises. Throws Error(asset) where the file is no longer the one `model_geometry`
   /// saw.
   Mesh model_mesh(const std::filesystem::path& file, const NormaliseOptions& options);
@@ -55,7 +57,13 @@ class Inputs {
   template <typename T, typename Reader>
   const T& once(std::map<std::filesystem::path, Read<T>>& known, const std::filesystem::path& path,
                 const Reader& reader);
-  const KnownModel& model(const std::filesystem::path& file);
+  /// What the database knows of a model, taken apart.
+  struct ModelFacts {
+    Hash128 geometry;
+    MendedDamage damage;
+    bool has_uvs = false;
+  };
+  const ModelFacts& model(const std::filesystem::path& file);
   KnownModel look_at_model(const std::filesystem::path& file);
 
   struct NewModel {
@@ -67,7 +75,7 @@ class Inputs {
 
   Database& database_;
   Stamps stamps_;
-  std::map<std::filesystem::path, Read<KnownModel>> models_;
+  std::map<std::filesystem::path, Read<ModelFacts>> models_;
   std::map<std::filesystem::path, Read<Scene>> materials_, environments_;
   std::vector<NewModel> new_models_;
   std::map<std::filesystem::path, Read<Sphere>> spheres_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/execute.h"
 #include "builder/build/folder_lock.h"
+#include "builder/build/lacking.h"
 #include "builder/cmd/concerns_text.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/progress.h"
@@ -97,6 +98,13 @@ void warn_of_mended(const Plan& plan) {
                     turned_models, turned_models == 1 ? "" : "s", turned, turned == 1 ? "" : "s"));
 }
 
+nlohmann::json to_json(const std::vector<Lacking>& all) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Lacking& lacking : all)
+    list.push_back({{"material", lacking.material}, {"models", lacking.models}});
+  return list;
+}
+
 int dry_run(const Arguments& arguments, const Plan& plan) {
   print_plan(arguments.json ? Stream::people : Stream::result, plan, arguments.verbose);
   const PlanCounts counts = count(plan);
@@ -140,6 +148,9 @@ int run_build(const Arguments& arguments) {
   Inputs& inputs = *sole.inputs;
   const Plan& plan = sole.plan;
   warn_of_mended(plan);
+  const std::vector<Lacking> all_lacking = find_lacking(plan, inputs);
+  for (const Lacking& lacking : all_lacking)
+    warn(to_text(lacking));
   if (arguments.explain)
     print_plan(arguments.json ? Stream::people : Stream::report, plan, arguments.verbose);
 
@@ -161,8 +172,10 @@ int run_build(const Arguments& arguments) {
   if (result.stopped)
     say(Stream::people, "dsbuild: stopped; what is finished is recorded, build again to go on\n");
   const std::size_t concerns = tell_concerns(result.concerns, dataset.recipe, arguments.strict);
+  nlohmann::json told = to_json(result, dataset);
+  told["lacking_uv"] = to_json(all_lacking);
   if (arguments.json)
-    print_json(to_json(result, dataset));
+    print_json(told);
   else
     print_result(result, dataset);
   return result.ok() && concerns == 0 ? 0 : 1;

@@ -21,16 +21,19 @@ void print_row(const std::string& name, const MeshReport& report) {
   say(Stream::result, "{:<24}", name);
   for (const MeshReportColumn& column : k_mesh_report_columns)
     say(Stream::result, " {:>14}", report.*column.count);
-  say(Stream::result, "  {}\n",
-      report.has_normals && report.has_uvs ? "normals, uvs"
-      : report.has_normals                 ? "normals"
-      : report.has_uvs                     ? "uvs"
-                                           : "-");
+  std::vector<std::string_view> stored;
+  if (report.has_normals) stored.emplace_back("normals");
+  if (report.has_uvs) stored.emplace_back("uvs");
+  if (report.has_colors) stored.emplace_back("colours");
+  if (stored.empty()) stored.emplace_back("-");
+  say(Stream::result, "  {}\n", fmt::join(stored, ", "));
 }
 
 nlohmann::json to_json(const std::string& name, const MeshReport& report) {
-  nlohmann::json object{
-      {"model", name}, {"has_normals", report.has_normals}, {"has_uvs", report.has_uvs}};
+  nlohmann::json object{{"model", name},
+                        {"has_normals", report.has_normals},
+                        {"has_uvs", report.has_uvs},
+                        {"has_colors", report.has_colors}};
   for (const MeshReportColumn& column : k_mesh_report_columns)
     object[column.name] = report.*column.count;
   return object;

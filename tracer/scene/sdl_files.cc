@@ -2,6 +2,7 @@
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/sdl_prune.h"
 #include "tracer/scene/sdl_reader.h"
+#include "tracer/scene/sdl_warn.h"
 
 #include <span>
 
@@ -60,7 +61,9 @@ Scene read_environment(const std::filesystem::path& folder) {
   constexpr SdlKind k_film[] = {SdlKind::film};
   report_unused(film, k_film, "a film file");
   diagnostics.throw_if_any();
-  return prune_environment(std::move(reader.scene));
+  Scene environment = prune_environment(std::move(reader.scene));
+  warn_of_environment(environment, folder.string());
+  return environment;
 }
 
 }  // namespace ds

@@ -104,6 +104,10 @@ std::string header_comment(std::string_view folder, const NodeType& type) {
   return comment;
 }
 
+bool reads_uvs(const NodeType& texture) {
+  return texture.name == "imagemap";
+}
+
 std::span<const NodeType> material_types() {
   static const std::span<const NodeType> rows = make_material_types();
   return rows;

@@ -40,6 +40,9 @@ struct NodeType {
   std::span<const NumberType> numbers;
 };
 
+/// Whether a texture of this type reads uv.
+bool reads_uvs(const NodeType& texture);
+
 /// In the order of tracer/kernels/lists.h; Material::type and Texture::type index them.
 std::span<const NodeType> material_types();
 std::span<const NodeType> texture_types();

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/build/plan.h"
+
+#include <string>
+#include <vector>
+
+namespace ds {
+
+/// A material whose textures read uv, and models that have none: their pictures show one colour
+/// where a pattern was meant.
+struct Lacking {
+  std::string material;  ///< its file's name
+  std::vector<std::string> models;
+};
+
+/// Of the shard's images, by material, models in the order of images.
+std::vector<Lacking> find_lacking(const Plan& plan, Inputs& inputs);
+
+/// One line, with the first few models by name.
+std::string to_text(const Lacking& lacking);
+
+}  // namespace ds

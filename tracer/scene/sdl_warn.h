@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tracer/scene/scene.h"
+
+#include <string>
+
+namespace ds {
+
+/// Warns of an environment that can be traced and is hardly meant so: one that gives no light, and
+/// objects whose material's textures read uv that their meshes do not have.
+void warn_of_environment(const Scene& environment, const std::string& name);
+
+}  // namespace ds
