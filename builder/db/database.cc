@@ -11,7 +11,7 @@ namespace ds {
 namespace {
 
 Hash128 hash_column(const Statement& row, int column) {
-  const std::optional<Hash128> hash = Hash128::from_hex(row.text(column));
+  const std::optional<Hash128> hash = Hash128::from_hex(row.view(column));
   if (!hash)
     throw DamagedDatabase(
         fmt::format("the database is damaged: \"{}\" is no hash", row.text(column)));
@@ -60,33 +60,39 @@ std::vector<std::string> parse_overrides(const std::string& text) {
 
 }  // namespace
 
-Database::Database(const std::filesystem::path& file) : connection_(file) {
-  prepare_schema(connection_, file.string());
-  connection_.check();
+Database::Database(const std::filesystem::path& file)
+    : check_(file), connection_(std::make_unique<Connection>(file)) {
+  prepare_schema(*connection_, file.string());
+  if (check_.needed()) connection_->check();
+}
+
+Database::~Database() {
+  connection_.reset();
+  check_.passed();
 }
 
 std::int64_t Database::data_version() {
-  Statement row = connection_.prepare("PRAGMA data_version");
+  Statement row = connection_->prepare("PRAGMA data_version");
   row.step();
   return row.integer(0);
 }
 
 void Database::put_text(Hash128 hash, std::string_view text) {
-  connection_.prepare("INSERT OR IGNORE INTO text VALUES (?1, ?2)")
+  connection_->prepare("INSERT OR IGNORE INTO text VALUES (?1, ?2)")
       .bind(1, hash.hex())
       .bind(2, text)
       .run();
 }
 
 std::optional<std::string> Database::find_text(Hash128 hash) {
-  Statement row = connection_.prepare("SELECT body FROM text WHERE hash = ?1");
+  Statement row = connection_->prepare("SELECT body FROM text WHERE hash = ?1");
   if (!row.bind(1, hash.hex()).step()) return std::nullopt;
   return row.text(0);
 }
 
 std::optional<Hash128> Database::find_content(const std::filesystem::path& file,
                                               const FileStamp& stamp) {
-  Statement row = connection_.prepare(
+  Statement row = connection_->prepare(
       "SELECT content FROM input_file WHERE path = ?1 AND size_bytes = ?2 AND mtime_ns = ?3 AND "
       "inode = ?4 AND ctime_ns = ?5");
   row.bind(1, file.string())
@@ -100,7 +106,7 @@ std::optional<Hash128> Database::find_content(const std::filesystem::path& file,
 
 void Database::put_content(const std::filesystem::path& file, const FileStamp& stamp,
                            Hash128 content) {
-  connection_.prepare("INSERT OR REPLACE INTO input_file VALUES (?1, ?2, ?3, ?4, ?5, ?6)")
+  connection_->prepare("INSERT OR REPLACE INTO input_file VALUES (?1, ?2, ?3, ?4, ?5, ?6)")
       .bind(1, file.string())
       .bind_count(2, stamp.size_bytes)
       .bind(3, stamp.mtime_ns)
@@ -111,14 +117,14 @@ void Database::put_content(const std::filesystem::path& file, const FileStamp& s
 }
 
 std::optional<KnownModel> Database::find_model(Hash128 content, int reader) {
-  Statement row = connection_.prepare(
+  Statement row = connection_->prepare(
       "SELECT geometry, damage FROM geometry WHERE content = ?1 AND reader = ?2");
   if (!row.bind(1, content.hex()).bind(2, std::int64_t{reader}).step()) return std::nullopt;
   return KnownModel{hash_column(row, 0), damage_column(row, 1)};
 }
 
 void Database::put_model(Hash128 content, int reader, const KnownModel& model) {
-  connection_.prepare("INSERT OR REPLACE INTO geometry VALUES (?1, ?2, ?3, ?4)")
+  connection_->prepare("INSERT OR REPLACE INTO geometry VALUES (?1, ?2, ?3, ?4)")
       .bind(1, content.hex())
       .bind(2, std::int64_t{reader})
       .bind(3, model.geometry.hex())
@@ -128,13 +134,13 @@ void Database::put_model(Hash128 content, int reader, const KnownModel& model) {
 
 std::optional<std::array<double, 4>> Database::find_sphere(Hash128 model_part, int reader) {
   Statement row =
-      connection_.prepare("SELECT x, y, z, radius FROM sphere WHERE model = ?1 AND reader = ?2");
+      connection_->prepare("SELECT x, y, z, radius FROM sphere WHERE model = ?1 AND reader = ?2");
   if (!row.bind(1, model_part.hex()).bind(2, std::int64_t{reader}).step()) return std::nullopt;
   return std::array{row.real(0), row.real(1), row.real(2), row.real(3)};
 }
 
 void Database::put_sphere(Hash128 model_part, int reader, const std::array<double, 4>& sphere) {
-  connection_.prepare("INSERT OR REPLACE INTO sphere VALUES (?1, ?2, ?3, ?4, ?5, ?6)")
+  connection_->prepare("INSERT OR REPLACE INTO sphere VALUES (?1, ?2, ?3, ?4, ?5, ?6)")
       .bind(1, model_part.hex())
       .bind(2, std::int64_t{reader})
       .bind(3, sphere[0])
@@ -145,11 +151,21 @@ void Database::put_sphere(Hash128 model_part, int reader, const std::array<doubl
 }
 
 bool Database::has_products() {
-  return connection_.prepare("SELECT 1 FROM product LIMIT 1").step();
+  return connection_->prepare("SELECT 1 FROM product LIMIT 1").step();
+}
+
+std::vector<Hash128> Database::pictures_with_rejected() {
+  std::vector<Hash128> keys;
+  // As the index product_rejected says it.
+  Statement row =
+      connection_->prepare("SELECT key FROM product WHERE rejected_samples > 0 AND kind = 'image'");
+  while (row.step())
+    keys.push_back(hash_column(row, 0));
+  return keys;
 }
 
 std::optional<Product> Database::find_product(Hash128 key) {
-  Statement row = connection_.prepare(
+  Statement row = connection_->prepare(
       "SELECT kind, object, size_bytes, sha256, pixels, tone_map_scale, rejected_samples, "
       "relative_error, facts FROM product WHERE key = ?1");
   if (!row.bind(1, key.hex()).step()) return std::nullopt;
@@ -162,7 +178,7 @@ std::optional<Product> Database::find_product(Hash128 key) {
 
 void Database::put_product(const Product& product, const TraceRun& run) {
   connection_
-      .prepare(
+      ->prepare(
           "INSERT OR REPLACE INTO product VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, "
           "?12)")
       .bind(1, product.key.hex())
@@ -184,14 +200,14 @@ void Database::add_pixel_counts(Hash128 key, const PixelCounts& counts) {
   std::optional<Product> product = find_product(key);
   if (!product) return;
   add_counts(product->pixel_counts, counts);
-  connection_.prepare("UPDATE product SET facts = ?2 WHERE key = ?1")
+  connection_->prepare("UPDATE product SET facts = ?2 WHERE key = ?1")
       .bind(1, key.hex())
       .bind(2, facts_text(*product))
       .run();
 }
 
 std::optional<DatasetRow> Database::find_dataset(const std::string& id) {
-  Statement row = connection_.prepare(
+  Statement row = connection_->prepare(
       "SELECT name, recipe, working_folder, overrides, manifest FROM dataset WHERE id = ?1");
   if (!row.bind(1, id).step()) return std::nullopt;
   return DatasetRow{
@@ -201,7 +217,7 @@ std::optional<DatasetRow> Database::find_dataset(const std::string& id) {
 void Database::put_dataset(const DatasetRow& row) {
   // A folder or file name may hold any bytes; what is not UTF-8 is refused by the JSON writer only
   // for overrides.
-  connection_.prepare("INSERT OR REPLACE INTO dataset VALUES (?1, ?2, ?3, ?4, ?5, ?6)")
+  connection_->prepare("INSERT OR REPLACE INTO dataset VALUES (?1, ?2, ?3, ?4, ?5, ?6)")
       .bind(1, row.id)
       .bind(2, row.name)
       .bind(3, row.recipe.string())
@@ -212,7 +228,7 @@ void Database::put_dataset(const DatasetRow& row) {
 }
 
 void Database::set_manifest(const std::string& dataset, Hash128 manifest) {
-  connection_.prepare("UPDATE dataset SET manifest = ?2 WHERE id = ?1")
+  connection_->prepare("UPDATE dataset SET manifest = ?2 WHERE id = ?1")
       .bind(1, dataset)
       .bind(2, manifest.hex())
       .run();
@@ -220,22 +236,30 @@ void Database::set_manifest(const std::string& dataset, Hash128 manifest) {
 
 std::map<std::string, PartHashes> Database::images(const std::string& dataset) {
   std::map<std::string, PartHashes> images;
-  Statement row = connection_.prepare(
+  visit_images(dataset, [&](std::string_view id, const PartHashes& parts) {
+    images.emplace_hint(images.end(), id, parts);
+  });
+  return images;
+}
+
+void Database::visit_images(const std::string& dataset,
+                            const std::function<void(std::string_view, const PartHashes&)>& visit) {
+  Statement row = connection_->prepare(
       "SELECT id, model, material, environment, camera, engine, files FROM image WHERE dataset = "
       "?1");
   row.bind(1, dataset);
+  PartHashes parts;
   while (row.step()) {
-    PartHashes& parts = images[row.text(0)];
     for (std::size_t i = 0; i < k_part_count; ++i)
       parts[i] = hash_column(row, static_cast<int>(i) + 1);
+    visit(row.view(0), parts);
   }
-  return images;
 }
 
 void Database::put_image(const std::string& dataset, const std::string& image,
                          const PartHashes& parts) {
   Statement statement =
-      connection_.prepare("INSERT OR REPLACE INTO image VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)");
+      connection_->prepare("INSERT OR REPLACE INTO image VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)");
   statement.bind(1, dataset).bind(2, image);
   for (std::size_t i = 0; i < k_part_count; ++i)
     statement.bind(static_cast<int>(i) + 3, parts[i].hex());
@@ -243,7 +267,7 @@ void Database::put_image(const std::string& dataset, const std::string& image,
 }
 
 void Database::remove_image(const std::string& dataset, const std::string& image) {
-  connection_.prepare("DELETE FROM image WHERE dataset = ?1 AND id = ?2")
+  connection_->prepare("DELETE FROM image WHERE dataset = ?1 AND id = ?2")
       .bind(1, dataset)
       .bind(2, image)
       .run();
@@ -251,25 +275,33 @@ void Database::remove_image(const std::string& dataset, const std::string& image
 
 std::map<std::string, PlacedFile> Database::placed_files(const std::string& dataset) {
   std::map<std::string, PlacedFile> files;
-  Statement row = connection_.prepare(
+  visit_placed(dataset, [&](const PlacedView& row) {
+    files.emplace_hint(files.end(), row.path,
+                       PlacedFile{std::string(row.path), std::string(row.image),
+                                  std::string(row.kind), row.product, row.object, row.stamp});
+  });
+  return files;
+}
+
+void Database::visit_placed(const std::string& dataset,
+                            const std::function<void(const PlacedView&)>& visit) {
+  Statement row = connection_->prepare(
       "SELECT path, image, kind, product, object, size_bytes, mtime_ns, inode, ctime_ns FROM "
-      "placed "
-      "WHERE dataset = ?1");
+      "placed WHERE dataset = ?1");
   row.bind(1, dataset);
   while (row.step()) {
-    PlacedFile file{row.text(0),         row.text(1),         row.text(2),
+    PlacedView file{row.view(0),         row.view(1),         row.view(2),
                     hash_column(row, 3), hash_column(row, 4), std::nullopt};
     if (row.integer(7) != 0)
       file.stamp = FileStamp{row.count(5), row.integer(6), row.integer(8), row.count(7)};
-    files.emplace(file.path, std::move(file));
+    visit(file);
   }
-  return files;
 }
 
 void Database::put_placed(const std::string& dataset, const PlacedFile& file) {
   const FileStamp stamp = file.stamp.value_or(FileStamp{});
   connection_
-      .prepare("INSERT OR REPLACE INTO placed VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)")
+      ->prepare("INSERT OR REPLACE INTO placed VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)")
       .bind(1, dataset)
       .bind(2, file.path)
       .bind(3, file.image)
@@ -284,7 +316,7 @@ void Database::put_placed(const std::string& dataset, const PlacedFile& file) {
 }
 
 void Database::remove_placed(const std::string& dataset, const std::string& path) {
-  connection_.prepare("DELETE FROM placed WHERE dataset = ?1 AND path = ?2")
+  connection_->prepare("DELETE FROM placed WHERE dataset = ?1 AND path = ?2")
       .bind(1, dataset)
       .bind(2, path)
       .run();
@@ -292,7 +324,7 @@ void Database::remove_placed(const std::string& dataset, const std::string& path
 
 std::int64_t Database::begin_build(const std::string& dataset, const std::string& host,
                                    std::int64_t process) {
-  Statement row = connection_.prepare(
+  Statement row = connection_->prepare(
       "INSERT INTO build (dataset, started_at, host, process, device, outcome, images, built, "
       "reused, failed, "
       "traced_samples, seconds) VALUES (?1, datetime('now'), ?2, ?3, '', 'running', 0, 0, 0, 0, 0, "
@@ -306,7 +338,7 @@ std::int64_t Database::begin_build(const std::string& dataset, const std::string
 
 void Database::update_build(const BuildRow& row) {
   connection_
-      .prepare(
+      ->prepare(
           "UPDATE build SET device = ?2, outcome = ?3, images = ?4, built = ?5, reused = ?6, "
           "failed = ?7, "
           "traced_samples = ?8, seconds = ?9 WHERE number = ?1")
@@ -324,7 +356,7 @@ void Database::update_build(const BuildRow& row) {
 
 std::vector<BuildRow> Database::builds(const std::string& dataset) {
   std::vector<BuildRow> builds;
-  Statement row = connection_.prepare(
+  Statement row = connection_->prepare(
       "SELECT number, started_at, host, process, device, outcome, images, built, reused, failed, "
       "traced_samples, seconds "
       "FROM build WHERE dataset = ?1 ORDER BY number DESC");

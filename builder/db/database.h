@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "builder/db/file_check.h"
 #include "builder/db/file_stamp.h"
 #include "builder/db/sqlite.h"
 #include "manifests/pixel_counts.h"
@@ -11,7 +12,9 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -58,6 +61,13 @@ struct PlacedFile {
   std::optional<FileStamp> stamp;  ///< absent: not seen whole since it was recorded
 };
 
+/// The same, read from a row that is not copied.
+struct PlacedView {
+  std::string_view path, image, kind;
+  Hash128 product, object;
+  std::optional<FileStamp> stamp;
+};
+
 /// What is known of a model file's content.
 struct KnownModel {
   Hash128 geometry;
@@ -91,10 +101,12 @@ struct BuildRow {
 /// throws. Not safe from two threads at once.
 class Database {
  public:
-  /// Opens or makes the file and checks it whole. Throws DamagedDatabase, or Error(io) where the
-  /// file was made by a newer dsbuild. An empty path is a database in memory.
+  /// Opens or makes the file, and checks it whole unless it is as the last process that had it open
+  /// left it (file_check.h). Throws DamagedDatabase, or Error(io) where the file was made by a newer
+  /// dsbuild. An empty path is a database in memory.
   explicit Database(const std::filesystem::path& file);
-  Connection& connection() { return connection_; }
+  ~Database();
+  Connection& connection() { return *connection_; }
   /// Another number once another connection has written.
   std::int64_t data_version();
 
@@ -114,6 +126,8 @@ class Database {
   void put_sphere(Hash128 model_part, int reader, const std::array<double, 4>& sphere);
 
   bool has_products();
+  /// Keys of the pictures of which some samples had to be left out: few.
+  std::vector<Hash128> pictures_with_rejected();
   std::optional<Product> find_product(Hash128 key);
   void put_product(const Product& product, const TraceRun& run);
   /// Adds counts to a product that was made without; nothing where there is no such product.
@@ -124,11 +138,17 @@ class Database {
   void set_manifest(const std::string& dataset, Hash128 manifest);
 
   std::map<std::string, PartHashes> images(const std::string& dataset);
+  /// The same, one after the other; the id holds during the call.
+  void visit_images(const std::string& dataset,
+                    const std::function<void(std::string_view id, const PartHashes&)>& visit);
   void put_image(const std::string& dataset, const std::string& image, const PartHashes& parts);
   void remove_image(const std::string& dataset, const std::string& image);
 
   /// By path.
   std::map<std::string, PlacedFile> placed_files(const std::string& dataset);
+  /// The same, one after the other; the texts hold during the call.
+  void visit_placed(const std::string& dataset,
+                    const std::function<void(const PlacedView&)>& visit);
   void put_placed(const std::string& dataset, const PlacedFile& file);
   void remove_placed(const std::string& dataset, const std::string& path);
 
@@ -139,7 +159,8 @@ class Database {
   std::vector<BuildRow> builds(const std::string& dataset);
 
  private:
-  Connection connection_;
+  FileCheck check_;
+  std::unique_ptr<Connection> connection_;
 };
 
 }  // namespace ds

@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <system_error>
 
@@ -22,10 +23,14 @@ std::int64_t ns_of(const timespec& time) {
 }  // namespace
 
 std::optional<FileStamp> stamp_of(const std::filesystem::path& file) {
+  return stamp_in(AT_FDCWD, file.c_str());
+}
+
+std::optional<FileStamp> stamp_in(int folder, const char* path) {
   struct stat status = {};
-  if (::stat(file.c_str(), &status) != 0) {
+  if (::fstatat(folder, path, &status, 0) != 0) {
     if (errno == ENOENT || errno == ENOTDIR || errno == ENAMETOOLONG) return std::nullopt;
-    fail(ErrorKind::io, "{}: cannot look at the file: {}", file.string(),
+    fail(ErrorKind::io, "{}: cannot look at the file: {}", path,
          std::generic_category().message(errno));
   }
   if (!S_ISREG(status.st_mode)) return std::nullopt;

@@ -24,6 +24,9 @@ struct FileStamp {
 /// Nothing where there is no such file (or it is no regular file). Throws Error(io) where the
 /// system cannot tell.
 std::optional<FileStamp> stamp_of(const std::filesystem::path& file);
+/// The same of a path relative to an open folder's descriptor; for thousands of files, since it
+/// takes no path apart.
+std::optional<FileStamp> stamp_in(int folder, const char* path);
 
 /// Whether the file was last written so recently that a further write could leave the same stamp:
 /// two writes of one tick of the file system's clock look alike (git calls such an entry racily

@@ -12,9 +12,10 @@ namespace ds {
 ///   4: ctime_ns in input_file and placed; 0, which no file has, in rows of older versions, so that
 ///      their files are read once more
 ///   5: sphere
+///   6: product_rejected
 /// An older file is converted when it is opened; a newer one is refused, since writing to it could
 /// lose what this program does not know.
-inline constexpr int k_schema_version = 5;
+inline constexpr int k_schema_version = 6;
 
 /// Makes the tables where the file is new. Throws Error(io) for a file of a newer version,
 /// DamagedDatabase for one that is some other program's.

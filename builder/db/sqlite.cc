@@ -168,10 +168,26 @@ std::optional<double> Statement::optional_real(int column) const {
 }
 
 std::string Statement::text(int column) const {
+  return std::string(view(column));
+}
+
+std::string_view Statement::view(int column) const {
   const unsigned char* text = sqlite3_column_text(handle_, column);
   if (text == nullptr) return {};
   return {reinterpret_cast<const char*>(text),
           static_cast<std::size_t>(sqlite3_column_bytes(handle_, column))};
+}
+
+Snapshot::Snapshot(Connection& connection) : connection_(connection) {
+  connection_.execute("BEGIN");
+}
+
+Snapshot::~Snapshot() {
+  try {
+    connection_.execute("COMMIT");
+  } catch (const Error&) {
+    // Nothing was written that could be lost.
+  }
 }
 
 Transaction::Transaction(Connection& connection) : connection_(connection) {

@@ -57,6 +57,8 @@ class Statement {
   double real(int column) const;
   std::optional<double> optional_real(int column) const;
   std::string text(int column) const;
+  /// The same without a copy, until the next `step`.
+  std::string_view view(int column) const;
 
  private:
   Connection& connection_;
@@ -91,6 +93,19 @@ class Connection {
   std::string name_;
   sqlite3* handle_ = nullptr;
   std::map<const char*, sqlite3_stmt*> statements_;
+};
+
+/// Everything read while it lives is of one moment, and locks are taken once instead of for every
+/// statement. Nothing may be written meanwhile, and no other be open.
+class Snapshot {
+ public:
+  explicit Snapshot(Connection& connection);
+  ~Snapshot();
+  Snapshot(const Snapshot&) = delete;
+  Snapshot& operator=(const Snapshot&) = delete;
+
+ private:
+  Connection& connection_;
 };
 
 /// BEGIN IMMEDIATE ... COMMIT; rolled back where it goes without `commit`. Not nestable.

@@ -231,6 +231,50 @@ TEST(Database, TakesAnotherProgramsFileForDamaged) {
   EXPECT_THROW(Database{file}, DamagedDatabase);
 }
 
+TEST(Database, IsReadWholeOnlyWhereItIsNotAsItWasLeft) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "db.sqlite";
+  { Database database(file); }
+  EXPECT_FALSE(FileCheck(file).needed());
+  {
+    Database database(file);
+    database.put_text(k_a, "text");
+  }
+  EXPECT_FALSE(FileCheck(file).needed());
+  std::ofstream(file.string() + "-wal") << "of a process that was killed";
+  EXPECT_TRUE(FileCheck(file).needed());
+  std::filesystem::remove(file.string() + "-wal");
+  EXPECT_FALSE(FileCheck(file).needed());
+  std::ofstream(file, std::ios::app) << "other bytes";
+  EXPECT_TRUE(FileCheck(file).needed());
+  { FileCheck(file).passed(); }
+  EXPECT_FALSE(FileCheck(file).needed());
+  std::ofstream(file.string() + "-checked") << "17 torn";
+  EXPECT_TRUE(FileCheck(file).needed());
+}
+
+TEST(Database, IsReadWholeAfterAnError) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "db.sqlite";
+  try {
+    Database database(file);
+    database.put_text(k_a, "text");
+    throw DamagedDatabase("found while it was used");
+  } catch (const DamagedDatabase&) {
+    EXPECT_TRUE(FileCheck(file).needed());
+  }
+}
+
+TEST(Database, KnowsThePicturesThatLackSamples) {
+  Database database({});
+  Product product{k_a, "image", k_b, 17, "", k_a, 1, 3, {}, {}};
+  database.put_product(product, {});
+  product.key = k_b;
+  product.rejected_samples = 0;
+  database.put_product(product, {});
+  EXPECT_EQ(database.pictures_with_rejected(), std::vector{k_a});
+}
+
 TEST(Database, FindsAPageWithOtherBytes) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "db.sqlite";
