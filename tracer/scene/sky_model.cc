@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace ds {
 namespace {
@@ -72,19 +73,27 @@ SkyModel::SkyModel(const SkySettings& settings) : settings_(settings) {
       sun_radiance(settings.sun_direction, settings.turbidity) *
       (portable::k_pi * k_sun_sin_radius * k_sun_sin_radius * settings.sun_direction.z);
   from_ground_ = settings.ground_albedo * (sun + irradiance_of_clear_sky()) * (1 / portable::k_pi);
-  const double brightness = settings.ground_autoscale ? portable::luminance(sky({0, 0, 1})) : 1;
+  Ring ring;
+  const double brightness =
+      settings.ground_autoscale ? portable::luminance(sky({0, 0, 1}, ring)) : 1;
   ground_ = settings.ground_color * brightness;
 }
 
-Vec3d SkyModel::clear(Vec3d direction) const {
+Vec3d SkyModel::clear(Vec3d direction, Ring& ring) const {
+  if (ring.z != direction.z) {
+    const auto gradation = [&](const Band& b) {
+      return 1 + b.a * portable::exp(b.b / (direction.z + k_horizon));
+    };
+    ring = {direction.z, {gradation(bands_[0]), gradation(bands_[1]), gradation(bands_[2])}};
+  }
   const double cos_gamma = clamped(dot(direction, settings_.sun_direction), -1, 1);
   const double gamma = portable::acos(cos_gamma);
-  const auto band_radiance = [&](const Band& b) {
-    const double gradation = 1 + b.a * portable::exp(b.b / (direction.z + k_horizon));
+  const auto band_radiance = [&](const Band& b, double gradation) {
     const double indicatrix = 1 + b.c * portable::exp(b.d * gamma) + b.e * cos_gamma * cos_gamma;
     return b.scale * gradation * indicatrix;
   };
-  return {band_radiance(bands_[0]), band_radiance(bands_[1]), band_radiance(bands_[2])};
+  return {band_radiance(bands_[0], ring.gradation.x), band_radiance(bands_[1], ring.gradation.y),
+          band_radiance(bands_[2], ring.gradation.z)};
 }
 
 Vec3d SkyModel::irradiance_of_clear_sky() const {
@@ -95,22 +104,24 @@ Vec3d SkyModel::irradiance_of_clear_sky() const {
     // Equal steps of sin^2(theta) are equal shares of a horizontal plane's projected hemisphere.
     const double sin2 = (ring + 0.5) / k_rings;
     const double sin_theta = std::sqrt(sin2);
+    Ring shared;
     for (int sector = 0; sector < k_sectors; ++sector) {
       const double phi = 2 * portable::k_pi * (sector + 0.5) / k_sectors;
       sum = sum + clear({sin_theta * portable::cos(phi), sin_theta * portable::sin(phi),
-                         std::sqrt(1 - sin2)});
+                         std::sqrt(1 - sin2)},
+                        shared);
     }
   }
   return sum * (portable::k_pi / (k_rings * k_sectors));
 }
 
-Vec3d SkyModel::sky(Vec3d direction) const {
-  return clear(direction) + from_ground_ * backscatter(direction.z, settings_.turbidity);
+Vec3d SkyModel::sky(Vec3d direction, Ring& ring) const {
+  return clear(direction, ring) + from_ground_ * backscatter(direction.z, settings_.turbidity);
 }
 
-Vec3d SkyModel::radiance(Vec3d direction) const {
-  if (direction.z >= 0) return sky(direction);
-  return settings_.ground_enable ? ground_ : sky(at_horizon(direction));
+Vec3d SkyModel::radiance(Vec3d direction, Ring& ring) const {
+  if (direction.z >= 0) return sky(direction, ring);
+  return settings_.ground_enable ? ground_ : sky(at_horizon(direction), ring);
 }
 
 namespace {
@@ -135,13 +146,20 @@ Image make_sky_image(const SkySettings& settings, int width, int height) {
   image.width = width;
   image.height = height;
   image.rgb.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
+  std::vector<double> cos_phi, sin_phi;
+  for (int column = 0; column < width; ++column) {
+    const double phi = 2 * portable::k_pi * (0.5 - (column + 0.5) / width);
+    cos_phi.push_back(portable::cos(phi));
+    sin_phi.push_back(portable::sin(phi));
+  }
+  SkyModel::Ring ring;
   for (int row = 0; row < height; ++row) {
     const double theta = portable::k_pi * (row + 0.5) / height;
     const double sin_theta = portable::sin(theta);
-    for (int column = 0; column < width; ++column) {
-      const double phi = 2 * portable::k_pi * (0.5 - (column + 0.5) / width);
-      const Vec3 rgb = to_float(sky.radiance(
-          {sin_theta * portable::cos(phi), sin_theta * portable::sin(phi), portable::cos(theta)}));
+    const double cos_theta = portable::cos(theta);
+    for (std::size_t i = 0; i < cos_phi.size(); ++i) {
+      const Vec3 rgb =
+          to_float(sky.radiance({sin_theta * cos_phi[i], sin_theta * sin_phi[i], cos_theta}, ring));
       image.rgb.insert(image.rgb.end(), {rgb.x, rgb.y, rgb.z});
     }
   }

@@ -37,16 +37,26 @@ struct SkySettings {
 class SkyModel {
  public:
   explicit SkyModel(const SkySettings& settings);
+  /// What directions of one height share, so that a row of a picture takes half the time: the same
+  /// bits, kept from call to call.
+  struct Ring {
+    double z = -2;  ///< of no direction
+    Vec3d gradation;
+  };
   /// `direction` unit, any.
-  Vec3d radiance(Vec3d direction) const;
+  Vec3d radiance(Vec3d direction, Ring& ring) const;
+  Vec3d radiance(Vec3d direction) const {
+    Ring ring;
+    return radiance(direction, ring);
+  }
 
  private:
   /// One band's coefficients for this sun and turbidity; `scale` is L_zenith / F(0, theta_sun).
   struct Band {
     double a, b, c, d, e, scale;
   };
-  Vec3d sky(Vec3d direction) const;
-  Vec3d clear(Vec3d direction) const;
+  Vec3d sky(Vec3d direction, Ring& ring) const;
+  Vec3d clear(Vec3d direction, Ring& ring) const;
   Vec3d irradiance_of_clear_sky() const;
 
   SkySettings settings_;
