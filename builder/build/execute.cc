@@ -70,6 +70,7 @@ class Execution {
   bool make_one(const PlannedImage& image);
   void fail_image(const PlannedImage& image, const std::string& why);
   void collect_failures();
+  bool nothing_to_finish() const;
   bool is_in_place(PlacedFiles& placed, const PlannedImage& image);
   void finish();
   void remove_left_over();
@@ -90,7 +91,6 @@ class Execution {
   std::map<std::string, std::vector<std::string>> failures_;  ///< image ids by what went wrong
   bool disk_failed_ = false;
   std::int64_t build_number_ = 0;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 void Execution::fail_image(const PlannedImage& image, const std::string& why) {
@@ -189,6 +189,7 @@ void Execution::collect_failures() {
 }
 
 void Execution::remove_left_over() {
+  if (plan_.to_remove.empty() && !plan_.forgets) return;
   Database& database = *dataset_.database;
   std::set<fs::path> folders;
   std::vector<std::string> removed;
@@ -231,7 +232,22 @@ bool Execution::is_in_place(PlacedFiles& placed, const PlannedImage& image) {
   }
 }
 
+/// Whether the folder is as the plan found it, and the plan found it all in place and listed: then
+/// nothing is looked at twice. Where there is an error target the records are read for the images
+/// that did not reach it.
+bool Execution::nothing_to_finish() const {
+  return result_.built == 0 && plan_.to_remove.empty() && !plan_.forgets &&
+         plan_.manifest.current() && !dataset_.recipe.engine.target &&
+         std::none_of(plan_.images.begin(), plan_.images.end(), [](const PlannedImage& image) {
+           return image.elsewhere || image.error || image.stale() || image.record;
+         });
+}
+
 void Execution::finish() {
+  if (nothing_to_finish()) {
+    result_.concerns = read_dataset_manifest(dataset_.folder).concerns;
+    return;
+  }
   maker_.remember_stamps();
   // Of builds that end at once, the last to write must have seen what all of them placed.
   const Claims::Claim claim = dataset_.claims->own_datasets();
@@ -264,7 +280,7 @@ void Execution::finish() {
 
 void Execution::log() {
   result_.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - options_.started).count();
   const char* outcome = result_.stopped ? "stopped" : result_.failures.empty() ? "done" : "failed";
   dataset_.database->update_build({build_number_, "", "", 0, result_.device, outcome,
                                    result_.images, result_.built, result_.reused, result_.failed,

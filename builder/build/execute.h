@@ -5,6 +5,7 @@
 #include "manifests/concerns.h"
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -16,6 +17,8 @@ struct BuildOptions {
   bool keep_going = false;  ///< make the images that can be made where others fail
   bool force = false;       ///< trace every image again
   bool copy = false;        ///< no file shares anything with the store
+  /// When what the user started began; BuildResult::seconds counts from here.
+  std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
 };
 
 /// Counts are of the shard's images; images = built + reused + failed + not_reached.
@@ -29,7 +32,7 @@ struct BuildResult {
   std::uint64_t developed = 0;       ///< of the built: a picture was made from a film
   std::uint64_t traced_samples = 0;  ///< camera samples, over all pixels
   ProgramCounts programs;
-  double seconds = 0;
+  double seconds = 0;    ///< of all of it, planning too
   std::string device;    ///< empty where nothing was traced
   bool stopped = false;  ///< by the user
   std::vector<std::pair<std::string, std::string>>

@@ -23,9 +23,8 @@ MendedDamage damage_and_facts(const MeshReport& report) {
 }  // namespace
 
 template <typename T, typename Reader>
-const T& Inputs::once(std::map<std::filesystem::path, Read<T>>& known,
-                      const std::filesystem::path& path, const Reader& reader) {
-  Read<T>& entry = known[path];
+const T& Inputs::once(Known<T>& known, const std::filesystem::path& path, const Reader& reader) {
+  Read<T>& entry = known[path.native()];
   if (!entry.value && !entry.error) {
     try {
       entry.value = reader(path);

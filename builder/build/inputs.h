@@ -11,6 +11,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace ds {
@@ -54,9 +55,11 @@ class Inputs {
     std::optional<T> value;
     std::optional<Error> error;
   };
+  /// By path; a path's own comparison takes it apart each time.
+  template <typename T>
+  using Known = std::unordered_map<std::string, Read<T>>;
   template <typename T, typename Reader>
-  const T& once(std::map<std::filesystem::path, Read<T>>& known, const std::filesystem::path& path,
-                const Reader& reader);
+  const T& once(Known<T>& known, const std::filesystem::path& path, const Reader& reader);
   /// What the database knows of a model, taken apart.
   struct ModelFacts {
     Hash128 geometry;
@@ -75,10 +78,10 @@ class Inputs {
 
   Database& database_;
   Stamps stamps_;
-  std::map<std::filesystem::path, Read<ModelFacts>> models_;
-  std::map<std::filesystem::path, Read<Scene>> materials_, environments_;
+  Known<ModelFacts> models_;
+  Known<Scene> materials_, environments_;
   std::vector<NewModel> new_models_;
-  std::map<std::filesystem::path, Read<Sphere>> spheres_;
+  Known<Sphere> spheres_;
   std::map<Hash128, Sphere> new_spheres_;  ///< by the hash of the model part
 };
 

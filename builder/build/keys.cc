@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/keys.h"
 
+#include "builder/build/text_form.h"
 #include "tracer/base/canonical.h"
 #include "tracer/device/program_text.h"
+#include "tracer/render/engine_text.h"
 #include "tracer/scene/sdl.h"
 
+#include <deque>
+#include <map>
+#include <optional>
 #include <span>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -97,100 +105,278 @@ std::vector<std::string> output_paths(const OutputSettings& outputs, const std::
   return paths;
 }
 
-KeyMaker::KeyMaker(const Recipe& recipe, Inputs& inputs, TextSet& texts)
-    : recipe_(recipe),
-      inputs_(inputs),
-      texts_(texts),
-      geometry_program_(hash_text(strip_comments(geometry_program_text()))) {}
+namespace {
 
-const Scene& KeyMaker::known_scene(const ImageSpec& image) {
-  const SceneName name{image.material_file, image.environment_folder};
-  const auto found = scenes_.find(name);
-  if (found != scenes_.end()) return found->second;
-  return scenes_.emplace(name, scene_without_model(inputs_, image)).first->second;
+/// What the key of an output is the hash of, less what it is made from.
+TextForm output_form(const char* kind, const std::string& development) {
+  CanonicalText text;
+  text.add("kind", kind);
+  text.add("from", "");
+  text.add("format", encoding_of(kind).format);
+  return {text.text() + development, {"from"}};
 }
 
-const std::string& KeyMaker::environment_shape(const std::filesystem::path& folder) {
-  const auto found = environment_shapes_.find(folder);
-  if (found != environment_shapes_.end()) return found->second;
+/// The five parts of the render key behind what `head` holds.
+TextForm form_of_parts(CanonicalText head) {
+  for (std::size_t i = 0; i < 5; ++i)
+    head.add(k_part_names[i], "");
+  return {head.text(), std::span(k_part_names).first<5>()};
+}
+
+/// What mask and depth see of an environment.
+std::string canonical_shape(const Scene& environment) {
   CanonicalText text;
-  for (const Object& object : inputs_.environment(folder).objects) {
+  for (const Object& object : environment.objects) {
     text.add("object.geometry", geometry_hash(object.mesh).hex());
     text.add("object.camera_invisible", object.camera_invisible);
   }
-  return environment_shapes_.emplace(folder, text.text()).first->second;
+  return text.text();
 }
 
-Hash128 KeyMaker::geometry_key(const ImageSpec& image, Hash128 model_part) {
+// Every member, and so no fewer: a struct with one more does not compile.
+auto members(const Camera& camera) {
+  const auto& [position, target, up, fov_deg, lens_radius_m, focus_distance_m] = camera;
+  return std::tie(position, target, up, fov_deg, lens_radius_m, focus_distance_m);
+}
+auto members(const ToneMap& map) {
+  const auto& [kind, scale, prescale, postscale, burn, gamma] = map;
+  return std::tie(kind, scale, prescale, postscale, burn, gamma);
+}
+bool same_target(const std::optional<ErrorTarget>& a, const std::optional<ErrorTarget>& b) {
+  if (!a || !b) return !a && !b;
+  const auto& [a_error, a_max_spp, a_tone_map, a_region] = *a;
+  const auto& [b_error, b_max_spp, b_tone_map, b_region] = *b;
+  return std::tie(a_error, a_max_spp, a_region) == std::tie(b_error, b_max_spp, b_region) &&
+         members(a_tone_map) == members(b_tone_map);
+}
+/// All but seed and target.
+auto members(const EngineSettings& engine) {
+  const auto& [width, height, spp, target, depth_total, depth_diffuse, depth_glossy, depth_specular,
+               roulette_depth, roulette_cap, filter_width, seed, outlier_limit, math] = engine;
+  return std::tie(width, height, spp, depth_total, depth_diffuse, depth_glossy, depth_specular,
+                  roulette_depth, roulette_cap, filter_width, outlier_limit, math);
+}
+
+bool same(const Camera& a, const Camera& b) {
+  return members(a) == members(b);
+}
+bool same_but_seed(const EngineSettings& a, const EngineSettings& b) {
+  return members(a) == members(b) && same_target(a.target, b.target);
+}
+
+/// What images from one camera in one environment share.
+struct View {
+  Shared<std::string> name;  ///< keeps the address that is this entry's name
+  Camera camera;
+  int width = 0, height = 0;
+  Hash128 part;
+  TextForm geometry;  ///< the geometry key's text, "model" to be filled
+};
+
+/// What images in one environment share.
+struct Environment {
+  Shared<std::filesystem::path> folder;  ///< keeps the address that is this entry's name
+  std::string text;                      ///< canonical
+  Hash128 part, files_part;
+  std::string shape;
+  TextForm picture;  ///< the picture's output
+  std::unordered_map<const void*, View> views;
+};
+
+/// What images of one material, environment and kind of lens share.
+struct Kind {
+  Shared<std::filesystem::path> material, environment;  ///< keep the addresses that are its name
+  Hash128 material_part;
+  const std::string* program = nullptr;
+  EngineSettings settings;  ///< with seed 0
+  TextForm engine;          ///< folded, "seed" to be filled
+  std::optional<TextForm> kept;
+};
+
+}  // namespace
+
+class KeyMaker::State {
+ public:
+  State(const Recipe& recipe, Inputs& inputs, TextSet& texts);
+
+  ImageKeys keys(const ImageSpec& image);
+  Hash128 kept_key(const ImageSpec& image, const ImageKeys& keys);
+  void add_texts(const ImageSpec& image);
+
+ private:
+  Hash128 model_part(const ImageSpec& image);
+  Environment& environment_of(const ImageSpec& image);
+  View& view_of(Environment& environment, const ImageSpec& image);
+  Kind& kind_of(const ImageSpec& image);
+  const std::string& program(const ImageSpec& image);
+  void add_outputs(ImageKeys& keys, Environment& environment, const std::string& id);
+
+  const Recipe& recipe_;
+  Inputs& inputs_;
+  TextSet& texts_;
+  Hash128 geometry_program_;
+  Shared<std::filesystem::path> model_;  ///< the last image's: a model's images follow each other
+  std::optional<Hash128> model_part_;
+  std::unordered_map<const void*, Environment> environments_;
+  std::map<std::tuple<const void*, const void*, bool>, Kind> kinds_;
+  std::deque<std::pair<Features, std::string>> programs_;
+  TextForm five_, film_sums_, mask_, depth_;
+};
+
+KeyMaker::State::State(const Recipe& recipe, Inputs& inputs, TextSet& texts)
+    : recipe_(recipe),
+      inputs_(inputs),
+      texts_(texts),
+      geometry_program_(hash_text(strip_comments(geometry_program_text()))),
+      five_(form_of_parts({})),
+      mask_(output_form("mask", "")),
+      depth_(output_form("depth", "")) {
+  CanonicalText head;
+  head.add("kind", "film_sums");
+  film_sums_ = form_of_parts(head);
+}
+
+Hash128 KeyMaker::State::model_part(const ImageSpec& image) {
+  if (!model_part_ || !model_.is_same(image.model_file)) {
+    model_part_.reset();
+    const Hash128 geometry = inputs_.model_geometry(image.model_file);
+    model_ = image.model_file;
+    model_part_ = hash_text(texts_.fold(canonical_model(geometry, recipe_.normalise)));
+  }
+  return *model_part_;
+}
+
+Environment& KeyMaker::State::environment_of(const ImageSpec& image) {
+  const auto found = environments_.find(image.environment_folder.identity());
+  if (found != environments_.end()) return found->second;
+  const Scene& scene = inputs_.environment(image.environment_folder);
+  const ToneMap& tone_map = tone_map_of(recipe_, scene);
+  Environment made;
+  made.folder = image.environment_folder;
+  made.part = texts_.add(canonical_environment(scene));
+  made.files_part = texts_.add(canonical_files(recipe_.outputs, tone_map));
+  made.shape = canonical_shape(scene);
+  made.picture = output_form("image", canonical_tone_map(tone_map));
+  return environments_.emplace(made.folder.identity(), std::move(made)).first->second;
+}
+
+View& KeyMaker::State::view_of(Environment& environment, const ImageSpec& image) {
+  View& view = environment.views[image.view.identity()];
+  const EngineSettings& engine = image.engine;
+  if (view.width == engine.width && view.height == engine.height && same(view.camera, image.camera))
+    return view;
+  view.name = image.view;
+  view.camera = image.camera;
+  view.width = engine.width;
+  view.height = engine.height;
+  view.part = hash_text(texts_.fold(canonical_camera(image.camera)));
   CanonicalText text;
   text.add("version", k_geometry_version);
   text.add("host_version", k_host_render_version);
   text.add("program", geometry_program_.hex());
-  text.add("model", model_part.hex());
-  text.add("environment", environment_shape(image.environment_folder));
+  text.add("model", "");
+  text.add("environment", environment.shape);
   add_vector(text, "camera.position", image.camera.position);
   add_vector(text, "camera.target", image.camera.target);
   add_vector(text, "camera.up", image.camera.up);
   text.add("camera.fov_deg", image.camera.fov_deg);
-  text.add("width", image.engine.width);
-  text.add("height", image.engine.height);
-  return hash_text(text.text());
+  text.add("width", engine.width);
+  text.add("height", engine.height);
+  view.geometry = TextForm(text.text(), {"model"});
+  return view;
 }
 
-std::vector<OutputFile> KeyMaker::outputs(const ImageSpec& image, const ImageKeys& keys,
-                                          const ToneMap& tone_map) const {
-  std::vector<OutputFile> outputs;
-  const auto add = [&](const std::string& kind, Hash128 traced, const std::string& development) {
-    CanonicalText text;
-    text.add("kind", kind);
-    text.add("from", traced.hex());
-    text.add("format", encoding_of(kind).format);
-    outputs.push_back({kind, output_path(image.id, kind), hash_text(text.text() + development)});
-  };
-  if (recipe_.outputs.image) add("image", keys.render, canonical_tone_map(tone_map));
-  if (recipe_.outputs.mask) add("mask", keys.geometry, "");
-  if (recipe_.outputs.depth) add("depth", keys.geometry, "");
-  return outputs;
+/// Of few different ones, however many materials and environments there are.
+const std::string& KeyMaker::State::program(const ImageSpec& image) {
+  Features features = features_of(scene_without_model(inputs_, image), image.camera);
+  for (const auto& [known, text] : programs_)
+    if (known == features) return text;
+  std::string text = strip_comments(path_program_text(features));
+  return programs_.emplace_back(std::move(features), std::move(text)).second;
 }
+
+Kind& KeyMaker::State::kind_of(const ImageSpec& image) {
+  const bool lens = image.camera.lens_radius_m > 0;
+  Kind& kind = kinds_[{image.material_file.identity(), image.environment_folder.identity(), lens}];
+  if (kind.program != nullptr && same_but_seed(kind.settings, image.engine)) return kind;
+  EngineSettings settings = image.engine;
+  settings.seed = 0;
+  kind.material = image.material_file;
+  kind.environment = image.environment_folder;
+  kind.material_part = texts_.add(canonical_material(inputs_.material(image.material_file)));
+  const std::string& text = program(image);
+  kind.engine = TextForm(texts_.fold(canonical_engine(settings, text)), {"seed"});
+  kind.kept.reset();
+  kind.settings = settings;
+  kind.program = &text;
+  return kind;
+}
+
+void KeyMaker::State::add_outputs(ImageKeys& keys, Environment& environment,
+                                  const std::string& id) {
+  CanonicalText files;
+  const auto add = [&](const char* kind, TextForm& form, Hash128 traced) {
+    const Hash128 key = form.hash({traced.hex()});
+    files.add(kind, key.hex());
+    keys.outputs.push_back({kind, output_path(id, kind), key});
+  };
+  if (recipe_.outputs.image) add("image", environment.picture, keys.render);
+  if (recipe_.outputs.mask) add("mask", mask_, keys.geometry);
+  if (recipe_.outputs.depth) add("depth", depth_, keys.geometry);
+  keys.files = hash_text(files.text());
+}
+
+ImageKeys KeyMaker::State::keys(const ImageSpec& image) {
+  Environment& environment = environment_of(image);
+  View& view = view_of(environment, image);
+  Kind& kind = kind_of(image);
+  ImageKeys keys;
+  keys.parts = {model_part(image),
+                kind.material_part,
+                environment.part,
+                view.part,
+                kind.engine.hash({fmt::format("{}", image.engine.seed)}),
+                environment.files_part};
+  const auto& parts = keys.parts;
+  keys.render =
+      five_.hash({parts[0].hex(), parts[1].hex(), parts[2].hex(), parts[3].hex(), parts[4].hex()});
+  keys.geometry = view.geometry.hash({parts[0].hex()});
+  add_outputs(keys, environment, image.id);
+  return keys;
+}
+
+Hash128 KeyMaker::State::kept_key(const ImageSpec& image, const ImageKeys& keys) {
+  Kind& kind = kind_of(image);
+  if (!kind.kept)
+    kind.kept = TextForm(canonical_kept_engine(kind.settings, *kind.program), {"seed"});
+  const Hash128 engine = kind.kept->hash({fmt::format("{}", image.engine.seed)});
+  const auto& parts = keys.parts;
+  return film_sums_.hash(
+      {parts[0].hex(), parts[1].hex(), parts[2].hex(), parts[3].hex(), engine.hex()});
+}
+
+/// The other texts were added when the first image of their kind was met.
+void KeyMaker::State::add_texts(const ImageSpec& image) {
+  texts_.add(canonical_model(inputs_.model_geometry(image.model_file), recipe_.normalise));
+  texts_.add(canonical_camera(image.camera));
+  texts_.add(kind_of(image).engine.fill({fmt::format("{}", image.engine.seed)}));
+}
+
+KeyMaker::KeyMaker(const Recipe& recipe, Inputs& inputs, TextSet& texts)
+    : state_(std::make_unique<State>(recipe, inputs, texts)) {}
+
+KeyMaker::~KeyMaker() = default;
 
 ImageKeys KeyMaker::keys(const ImageSpec& image) {
-  const Scene& environment = inputs_.environment(image.environment_folder);
-  const auto part = [&](auto& known, const std::filesystem::path& path, const auto& canonical) {
-    const auto found = known.find(path);
-    return found != known.end() ? found->second
-                                : known.emplace(path, texts_.add(canonical())).first->second;
-  };
-  const ToneMap& tone_map = tone_map_of(recipe_, environment);
-  ImageKeys keys;
-  keys.parts[0] =
-      texts_.add(canonical_model(inputs_.model_geometry(image.model_file), recipe_.normalise));
-  keys.parts[1] = part(material_parts_, image.material_file,
-                       [&] { return canonical_material(inputs_.material(image.material_file)); });
-  keys.parts[2] = part(environment_parts_, image.environment_folder,
-                       [&] { return canonical_environment(environment); });
-  keys.parts[3] = texts_.add(canonical_camera(image.camera));
-  keys.parts[4] = texts_.add(canonical_engine(known_scene(image), image.camera, image.engine));
-  keys.parts[5] = texts_.add(canonical_files(recipe_.outputs, tone_map));
+  return state_->keys(image);
+}
 
-  CanonicalText five;
-  for (std::size_t i = 0; i < 5; ++i)
-    five.add(k_part_names[i], keys.parts[i].hex());
-  keys.render = hash_text(five.text());
-  CanonicalText kept;
-  kept.add("kind", "film_sums");
-  for (std::size_t i = 0; i < 4; ++i)
-    kept.add(k_part_names[i], keys.parts[i].hex());
-  kept.add(k_part_names[4],
-           hash_text(canonical_kept_engine(known_scene(image), image.camera, image.engine)).hex());
-  keys.kept = hash_text(kept.text());
-  keys.geometry = geometry_key(image, keys.parts[0]);
-  keys.outputs = outputs(image, keys, tone_map);
+Hash128 KeyMaker::kept_key(const ImageSpec& image, const ImageKeys& keys) {
+  return state_->kept_key(image, keys);
+}
 
-  CanonicalText files;
-  for (const OutputFile& output : keys.outputs)
-    files.add(output.kind, output.key.hex());
-  keys.files = hash_text(files.text());
-  return keys;
+void KeyMaker::add_texts(const ImageSpec& image) {
+  state_->add_texts(image);
 }
 
 }  // namespace ds

@@ -6,9 +6,8 @@
 #include "builder/db/database.h"
 #include "builder/recipe/recipe.h"
 
-#include <map>
+#include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace ds {
@@ -30,36 +29,31 @@ struct OutputFile {
 struct ImageKeys {
   PartHashes parts;  ///< of folded texts; the sixth, "files", is not in `render`
   Hash128 render, geometry;
-  Hash128 kept;   ///< of the film's sums: as render, less what only says when to stop
+  /// Of the film's sums: as render, less what only says when to stop. Zero where no film is kept or
+  /// nothing of the image is made.
+  Hash128 kept;
   Hash128 files;  ///< of all outputs
   std::vector<OutputFile> outputs;
 };
 
-/// Makes keys, and keeps the texts they are hashes of. Needs no OpenCL device. Everything it refers
-/// to must outlive it.
+/// Makes keys, and keeps the texts they are hashes of. What images of one kind share (the traced program's text, canonical texts, their
+/// hashes) is made once a kind: 25,000 images take a fraction of a second. Needs no OpenCL device.
+/// Everything it refers to must outlive it.
 class KeyMaker {
  public:
   KeyMaker(const Recipe& recipe, Inputs& inputs, TextSet& texts);
+  ~KeyMaker();
 
-  /// Throws where a file of the image cannot be read.
+  /// All but `kept`. Throws where a file of the image cannot be read.
   ImageKeys keys(const ImageSpec& image);
+  /// ImageKeys::kept: a hash of the whole program's text, so only for images that need it.
+  Hash128 kept_key(const ImageSpec& image, const ImageKeys& keys);
+  /// Puts the texts that `keys` are hashes of into the set, for `explain`.
+  void add_texts(const ImageSpec& image);
 
  private:
-  using SceneName = std::pair<std::filesystem::path, std::filesystem::path>;
-
-  const Scene& known_scene(const ImageSpec& image);
-  Hash128 geometry_key(const ImageSpec& image, Hash128 model_part);
-  const std::string& environment_shape(const std::filesystem::path& folder);
-  std::vector<OutputFile> outputs(const ImageSpec& image, const ImageKeys& keys,
-                                  const ToneMap& tone_map) const;
-
-  const Recipe& recipe_;
-  Inputs& inputs_;
-  TextSet& texts_;
-  Hash128 geometry_program_;
-  std::map<SceneName, Scene> scenes_;
-  std::map<std::filesystem::path, Hash128> material_parts_, environment_parts_;
-  std::map<std::filesystem::path, std::string> environment_shapes_;
+  class State;
+  std::unique_ptr<State> state_;
 };
 
 /// The image's scene with one triangle in the model's place: all that its program depends on.

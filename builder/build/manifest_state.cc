@@ -26,7 +26,7 @@ constexpr std::size_t k_most_named = 4;
 struct Label {
   const char* name;
   std::string ImageRecord::*recorded;
-  std::string ImageSpec::*wanted;
+  Shared<std::string> ImageSpec::*wanted;
   bool of_model;  ///< holds of images too that cannot be made now
 };
 constexpr Label k_labels[] = {
@@ -54,7 +54,7 @@ Hash128 labels_of(DatasetRecord record, const Plan& plan) {
   for (const PlannedImage& image : plan.images) {
     add(image.spec.id);
     for (const Label& label : k_labels)
-      add(image.spec.*label.wanted);
+      add(*(image.spec.*label.wanted));
   }
   return hash_text(text);
 }
@@ -68,7 +68,7 @@ void add_hash(std::string& text, Hash128 hash) {
 /// Empty where the file stands as it was written.
 std::string why_not_as_written(const Dataset& dataset, const char* path,
                                const PlacedFiles& placed) {
-  const PlacedFile* known = placed.find(path);
+  const PlacedFiles::Row* known = placed.find(path);
   if (known == nullptr) return fmt::format("{} was never written", path);
   const fs::path file = dataset.folder / path;
   const std::optional<FileStamp> stamp = stamp_of(file);
@@ -95,7 +95,7 @@ void compare_images(const Plan& plan, const std::vector<ImageRecord>& records,
       const auto record = by_id.find(image.spec.id);
       if (record == by_id.end() || image.stale() || (image.error && !label.of_model)) continue;
       const std::string& before = record->second->*label.recorded;
-      const std::string& after = image.spec.*label.wanted;
+      const std::string& after = *(image.spec.*label.wanted);
       if (before == after) continue;
       if (count++ == 0) first = fmt::format("{}: {}", image.spec.id, change(before, after));
     }
@@ -226,7 +226,7 @@ ManifestSources manifest_sources(const Recipe& recipe, const Plan& plan,
     add_hash(text, image->keys.render);
     for (const OutputFile& output : image->keys.outputs) {
       add_hash(text, output.key);
-      if (const PlacedFile* file = placed.find(output.path)) add_hash(text, file->object);
+      if (const PlacedFiles::Row* file = placed.find(output.path)) add_hash(text, file->object);
     }
   }
   sources.listing = hash_text(text);
@@ -250,7 +250,7 @@ Hash128 what_is_made(const Recipe& recipe, const Plan& plan) {
 bool manifest_stands(const Dataset& dataset, const ManifestSources& sources,
                      const PlacedFiles& placed) {
   const auto written_from = [&](const char* path, Hash128 source) {
-    const PlacedFile* known = placed.find(path);
+    const PlacedFiles::Row* known = placed.find(path);
     return known != nullptr && known->product == source;
   };
   return dataset.row.manifest == sources.listing && written_from(k_images_file, sources.listing) &&

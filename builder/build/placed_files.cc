@@ -4,36 +4,61 @@
 #include "tracer/base/files.h"
 
 #include <algorithm>
+#include <fcntl.h>
 #include <filesystem>
 #include <optional>
-#include <set>
+#include <unistd.h>
 
 namespace ds {
 
+PlacedFiles::PlacedFiles(Dataset& dataset, Stamps stamps)
+    : dataset_(dataset),
+      stamps_(stamps),
+      folder_(::open(dataset.folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC)) {
+  dataset.database->visit_placed(dataset.row.id, [&](const PlacedView& row) {
+    rows_.push_back({hash_text(row.path), hash_text(row.image), row.product, row.object, row.stamp,
+                     row.kind == k_manifest_kind});
+  });
+  std::sort(rows_.begin(), rows_.end(), [](const Row& a, const Row& b) { return a.path < b.path; });
+}
+
+PlacedFiles::~PlacedFiles() {
+  if (folder_ >= 0) ::close(folder_);
+}
+
+const PlacedFiles::Row* PlacedFiles::find(std::string_view path) const {
+  const Hash128 hash = hash_text(path);
+  const auto found = std::lower_bound(rows_.begin(), rows_.end(), hash,
+                                      [](const Row& row, Hash128 key) { return row.path < key; });
+  return found != rows_.end() && found->path == hash ? &*found : nullptr;
+}
+
 std::string PlacedFiles::why_not_in_place(const std::string& image_id, const OutputFile& output) {
-  const auto found = placed_.find(output.path);
-  if (found == placed_.end() || found->second.image != image_id)
+  const Row* placed = find(output.path);
+  if (placed == nullptr || placed->image != hash_text(image_id))
     return output.path + " was never made";
-  PlacedFile& placed = found->second;
-  if (placed.product != output.key) return output.path + " is of an older key";
-  const std::filesystem::path file = dataset_.folder / output.path;
-  const std::optional<FileStamp> stamp = stamp_of(file);
+  if (placed->product != output.key) return output.path + " is of an older key";
+  const std::optional<FileStamp> stamp =
+      folder_ >= 0 ? stamp_in(folder_, output.path.c_str()) : std::nullopt;
   if (!stamp) return output.path + " is missing";
-  if (placed.stamp == stamp && stamps_ == Stamps::trust) return "";
-  if (hash_file(file).xxh128 != placed.object) return output.path + " was changed on the disk";
+  if (placed->stamp == stamp && stamps_ == Stamps::trust) return "";
+  const std::filesystem::path file = dataset_.folder / output.path;
+  if (hash_file(file).xxh128 != placed->object) return output.path + " was changed on the disk";
   // Its permissions were changed, or an older dsbuild placed it for root: an editor would write into
   // the store.
-  if (dataset_.store && dataset_.store->is_object(file, placed.object) && may_write(file))
+  if (dataset_.store && dataset_.store->is_object(file, placed->object) && may_write(file))
     return output.path + " can be written to although it is one file with the store's";
-  placed.stamp = stamp;
-  restamped_.push_back(placed);
+  rows_[static_cast<std::size_t>(placed - rows_.data())].stamp = stamp;
+  restamped_.push_back(
+      {output.path, image_id, output.kind, placed->product, placed->object, stamp});
   return "";
 }
 
-bool PlacedFiles::all_in_place(const PlannedImage& image) {
-  return std::all_of(
-      image.keys.outputs.begin(), image.keys.outputs.end(),
-      [&](const OutputFile& output) { return why_not_in_place(image.spec.id, output).empty(); });
+bool PlacedFiles::all_in_place(const std::string& image_id,
+                               const std::vector<OutputFile>& outputs) {
+  return std::all_of(outputs.begin(), outputs.end(), [&](const OutputFile& output) {
+    return why_not_in_place(image_id, output).empty();
+  });
 }
 
 bool PlacedFiles::in_place(const ImageRecord& record) {
@@ -41,31 +66,38 @@ bool PlacedFiles::in_place(const ImageRecord& record) {
     const std::filesystem::path file = dataset_.folder / wanted.path;
     const std::optional<FileStamp> stamp = stamp_of(file);
     if (!stamp) return false;
-    const auto found = placed_.find(wanted.path);
-    if (found != placed_.end() && found->second.object == wanted.hashes.xxh128 &&
-        found->second.stamp == stamp)
+    const Row* placed = find(wanted.path);
+    if (placed != nullptr && placed->object == wanted.hashes.xxh128 && placed->stamp == stamp)
       return true;
     return hash_file(file).xxh128 == wanted.hashes.xxh128;
   });
 }
 
-const PlacedFile* PlacedFiles::find(const std::string& path) const {
-  const auto found = placed_.find(path);
-  return found != placed_.end() ? &found->second : nullptr;
-}
-
 std::vector<std::string> PlacedFiles::left_over(const std::vector<PlannedImage>& images,
                                                 Shard shard) const {
   // The recipe names the files of images too that cannot be made now.
-  std::set<std::string> wanted;
-  for (const PlannedImage& image : images)
-    if (!image.refused)
-      for (std::string& path : output_paths(dataset_.recipe.outputs, image.spec.id))
-        wanted.insert(std::move(path));
+  std::vector<Hash128> wanted;
+  wanted.reserve(rows_.size());
+  for (const PlannedImage& image : images) {
+    if (image.refused) continue;
+    for (const OutputFile& output : image.keys.outputs)
+      wanted.push_back(hash_text(output.path));
+    if (!image.error) continue;
+    for (const std::string& path : output_paths(dataset_.recipe.outputs, image.spec.id))
+      wanted.push_back(hash_text(path));
+  }
+  std::sort(wanted.begin(), wanted.end());
+  const auto is_left_over = [&](const Row& row) {
+    return !row.of_manifest && !std::binary_search(wanted.begin(), wanted.end(), row.path);
+  };
   std::vector<std::string> paths;
-  for (const auto& [path, placed] : placed_)
-    if (placed.kind != k_manifest_kind && !wanted.contains(path) && shard.holds(placed.image))
-      paths.push_back(path);
+  if (std::none_of(rows_.begin(), rows_.end(), is_left_over)) return paths;
+  // Their names are in the database only.
+  dataset_.database->visit_placed(dataset_.row.id, [&](const PlacedView& row) {
+    if (row.kind != k_manifest_kind && shard.holds(row.image) &&
+        !std::binary_search(wanted.begin(), wanted.end(), hash_text(row.path)))
+      paths.emplace_back(row.path);
+  });
   return paths;
 }
 

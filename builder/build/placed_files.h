@@ -5,31 +5,41 @@
 #include "builder/build/plan.h"
 #include "manifests/manifest.h"
 
-#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ds {
 
 /// The files that builds put into a dataset's folder: as the database knew them when this was made,
-/// and as they lie on the disk when it is asked.
+/// and as they lie on the disk when it is asked. 100 bytes a file: there may be 100,000.
 class PlacedFiles {
  public:
+  /// What the database knew of a file; path and image by their hashes.
+  struct Row {
+    Hash128 path, image, product, object;
+    std::optional<FileStamp> stamp;
+    bool of_manifest = false;
+  };
+
   /// The dataset must outlive it.
-  explicit PlacedFiles(Dataset& dataset, Stamps stamps = Stamps::trust)
-      : dataset_(dataset),
-        stamps_(stamps),
-        placed_(dataset.database->placed_files(dataset.row.id)) {}
+  explicit PlacedFiles(Dataset& dataset, Stamps stamps = Stamps::trust);
+  ~PlacedFiles();
+  PlacedFiles(const PlacedFiles&) = delete;
+  PlacedFiles& operator=(const PlacedFiles&) = delete;
 
   /// Empty where the file is there and what its key says, else why it is not. Reads a file whose
   /// stamp is not the one remembered. Throws Error(io).
   std::string why_not_in_place(const std::string& image_id, const OutputFile& output);
   /// Whether that holds for every file of the image. Its keys must be known.
-  bool all_in_place(const PlannedImage& image);
+  bool all_in_place(const std::string& image_id, const std::vector<OutputFile>& outputs);
+  bool all_in_place(const PlannedImage& image) {
+    return all_in_place(image.spec.id, image.keys.outputs);
+  }
   /// Whether every file of a manifest's line is there with the bytes that it says.
   bool in_place(const ImageRecord& record);
   /// What the database knew of a file; null where nothing.
-  const PlacedFile* find(const std::string& path) const;
+  const Row* find(std::string_view path) const;
   /// The files of the shard's images that are of none of these images, or of one whose picture is
   /// refused; relative to the folder.
   std::vector<std::string> left_over(const std::vector<PlannedImage>& images, Shard shard) const;
@@ -39,7 +49,8 @@ class PlacedFiles {
  private:
   Dataset& dataset_;
   Stamps stamps_;
-  std::map<std::string, PlacedFile> placed_;
+  int folder_;             ///< descriptor; -1 where there is no folder
+  std::vector<Row> rows_;  ///< by path
   std::vector<PlacedFile> restamped_;
 };
 

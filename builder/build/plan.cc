@@ -15,18 +15,37 @@ constexpr std::size_t k_most_changes = 4;
 
 class Planner {
  public:
-  Planner(Dataset& dataset, TextSet& texts, bool force, Stamps stamps)
+  Planner(Dataset& dataset, KeyMaker& keys, TextSet& texts, bool force, Stamps stamps)
       : dataset_(dataset),
         database_(*dataset.database),
+        keys_(keys),
         texts_(texts),
         force_(force),
-        known_(database_.images(dataset.row.id)),
-        placed_(dataset, stamps) {}
+        placed_(dataset, stamps),
+        rejected_(database_.pictures_with_rejected()) {
+    database_.visit_images(dataset.row.id, [&](std::string_view id, const PartHashes& parts) {
+      known_.push_back({hash_text(id), parts, false});
+    });
+    std::sort(known_.begin(), known_.end(),
+              [](const Known& a, const Known& b) { return a.id < b.id; });
+    std::sort(rejected_.begin(), rejected_.end());
+  }
 
   void plan(PlannedImage& image);
+  /// Notes that the recipe has such an image.
+  void want(const std::string& id);
+  /// Whether the database knows images that nobody wanted.
+  bool forgets() const;
   PlacedFiles& placed() { return placed_; }
 
  private:
+  /// What the database has of an image, by the hash of its id.
+  struct Known {
+    Hash128 id;
+    PartHashes parts;
+    bool wanted = false;
+  };
+  Known* find_known(const std::string& id);
   bool in_store(Hash128 key);
   void plan_files(PlannedImage& image, bool changed);
   void find_kept(PlannedImage& image);
@@ -35,11 +54,30 @@ class Planner {
 
   Dataset& dataset_;
   Database& database_;
+  KeyMaker& keys_;
   TextSet& texts_;
   bool force_;
-  std::map<std::string, PartHashes> known_;
+  std::vector<Known> known_;  ///< by id
   PlacedFiles placed_;
+  std::vector<Hash128> rejected_;  ///< ascending
 };
+
+Planner::Known* Planner::find_known(const std::string& id) {
+  const Hash128 hash = hash_text(id);
+  const auto found =
+      std::lower_bound(known_.begin(), known_.end(), hash,
+                       [](const Known& known, Hash128 key) { return known.id < key; });
+  return found != known_.end() && found->id == hash ? &*found : nullptr;
+}
+
+void Planner::want(const std::string& id) {
+  if (Known* known = find_known(id)) known->wanted = true;
+}
+
+bool Planner::forgets() const {
+  return std::any_of(known_.begin(), known_.end(),
+                     [](const Known& known) { return !known.wanted; });
+}
 
 bool Planner::in_store(Hash128 key) {
   if (!dataset_.store) return false;
@@ -58,7 +96,7 @@ void Planner::add_changes(PlannedImage& image, const PartHashes& before) {
 
 /// The kept film that tracing can go on from.
 void Planner::find_kept(PlannedImage& image) {
-  if (force_ || !dataset_.recipe.keep_sums || !in_store(image.keys.kept)) return;
+  if (force_ || !in_store(image.keys.kept)) return;
   const std::uint64_t samples = database_.find_product(image.keys.kept)->facts.samples;
   // Of another number of samples it is started anew; with an error target the tracer decides.
   if (samples <= image.samples()) image.kept_samples = samples;
@@ -81,6 +119,10 @@ void Planner::plan_files(PlannedImage& image, bool changed) {
     }
     image.files.push_back(std::move(file));
   }
+  const auto in_place = [](const PlannedFile& file) { return file.state == FileState::in_place; };
+  if (!dataset_.recipe.keep_sums || std::all_of(image.files.begin(), image.files.end(), in_place))
+    return;
+  image.keys.kept = keys_.kept_key(image.spec, image.keys);
   if (image.trace_film) find_kept(image);
 }
 
@@ -89,6 +131,8 @@ void Planner::check_known_picture(PlannedImage& image) {
   if (force_) return;
   for (const OutputFile& output : image.keys.outputs) {
     if (output.kind != "image") continue;
+    // No limit is below no rejected sample.
+    if (!std::binary_search(rejected_.begin(), rejected_.end(), output.key)) continue;
     const std::optional<Product> known = database_.find_product(output.key);
     if (!known) continue;
     image.refused = true;
@@ -100,21 +144,23 @@ void Planner::check_known_picture(PlannedImage& image) {
 void Planner::plan(PlannedImage& image) {
   check_known_picture(image);
   if (image.elsewhere) return;
-  const auto known = known_.find(image.spec.id);
-  const bool changed = known != known_.end() && known->second != image.keys.parts;
+  const Known* known = find_known(image.spec.id);
+  const bool changed = known != nullptr && known->parts != image.keys.parts;
+  const bool as_known = known != nullptr && !changed;
+  if (as_known && !force_ && placed_.all_in_place(image)) return;
+  keys_.add_texts(image.spec);
   if (force_) image.reasons.emplace_back("forced");
-  if (known == known_.end()) image.reasons.emplace_back("new");
-  if (changed) add_changes(image, known->second);
-  plan_files(image, changed || known == known_.end());
+  if (known == nullptr) image.reasons.emplace_back("new");
+  if (changed) add_changes(image, known->parts);
+  plan_files(image, !as_known);
   const auto in_place = [](const PlannedFile& file) { return file.state == FileState::in_place; };
   if (std::all_of(image.files.begin(), image.files.end(), in_place)) {
     // Only the record is behind: an output was switched off, or a database was lost.
     image.record = !image.reasons.empty();
     image.reasons.clear();
   }
-  const bool lost_film =
-      known != known_.end() && known->second == image.keys.parts && image.trace_film && !force_;
-  if (lost_film) image.reasons.emplace_back("its film is not in the store");
+  if (as_known && image.trace_film && !force_)
+    image.reasons.emplace_back("its film is not in the store");
 }
 
 }  // namespace
@@ -129,11 +175,14 @@ std::uint64_t PlannedImage::samples() const {
 
 Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
   Plan plan;
+  std::optional<Snapshot> snapshot(std::in_place, dataset.database->connection());
   KeyMaker keys(dataset.recipe, inputs, plan.texts);
-  Planner planner(dataset, plan.texts, force, inputs.stamps());
-  for (ImageSpec& spec : expand(dataset.recipe)) {
+  Planner planner(dataset, keys, plan.texts, force, inputs.stamps());
+  plan.images.reserve(image_count(dataset.recipe));
+  expand(dataset.recipe, [&](ImageSpec&& spec) {
     PlannedImage image;
     image.elsewhere = !shard.holds(spec.id);
+    planner.want(spec.id);
     image.spec = std::move(spec);
     try {
       if (dataset.recipe.camera_fit)
@@ -158,8 +207,10 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
       image = std::move(failed);
     }
     plan.images.push_back(std::move(image));
-  }
+  });
   plan.to_remove = planner.placed().left_over(plan.images, shard);
+  plan.forgets = planner.forgets();
+  snapshot.reset();
   plan.manifest = manifest_state(dataset, plan, planner.placed());
   inputs.remember();
   planner.placed().remember_stamps();

@@ -35,8 +35,8 @@ struct PlannedFile {
 struct PlannedImage {
   ImageSpec spec;
   ImageKeys keys;
-  bool elsewhere = false;  ///< of another shard: nothing below is filled but `error`
-  std::vector<PlannedFile> files;
+  bool elsewhere = false;          ///< of another shard: nothing below is filled but `error`
+  std::vector<PlannedFile> files;  ///< as keys.outputs; none where it is up to date
   bool trace_film = false, trace_geometry = false;
   std::uint64_t kept_samples = 0;    ///< of a kept film that its film goes on from
   bool record = false;               ///< the database is behind though no file is
@@ -71,6 +71,7 @@ struct Plan {
   std::vector<std::string> to_remove;  ///< files dsbuild made, of the shard's images, that no image
                                        ///< names any more or whose picture is refused; relative to
                                        ///< the folder
+  bool forgets = false;                ///< the database knows images that the recipe has no more
   ManifestState manifest;
   TextSet texts;
   std::map<std::string, MendedModel> mended;  ///< by model name, of all shards' images

@@ -80,7 +80,7 @@ std::vector<std::string> unescaped_lines(std::string_view value) {
 
 }  // namespace
 
-Hash128 TextSet::add(std::string_view canonical) {
+std::string TextSet::fold(std::string_view canonical) {
   std::string folded;
   for_each_line(canonical, [&](std::string_view line) {
     const std::size_t start = value_start(line);
@@ -93,6 +93,11 @@ Hash128 TextSet::add(std::string_view canonical) {
     texts_.try_emplace(hash, value);
     folded += fmt::format("{}{}{}\n", line.substr(0, start), k_reference, hash.hex());
   });
+  return folded;
+}
+
+Hash128 TextSet::add(std::string_view canonical) {
+  std::string folded = fold(canonical);
   const Hash128 hash = hash_text(folded);
   texts_.try_emplace(hash, std::move(folded));
   return hash;

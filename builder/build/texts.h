@@ -22,7 +22,9 @@ class TextSet {
  public:
   static constexpr std::size_t k_longest_value = 200;
 
-  /// The hash of the folded text, which depends on every byte of `canonical`.
+  /// Keeps the long values and gives the text that is left, its own hash not yet kept.
+  std::string fold(std::string_view canonical);
+  /// Keeps the folded text too. The hash is of it and depends on every byte of `canonical`.
   Hash128 add(std::string_view canonical);
   /// The folded text.
   const std::string* find(Hash128 hash) const;

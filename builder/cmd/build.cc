@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <set>
 
@@ -44,6 +45,10 @@ nlohmann::json to_json(const BuildResult& result, const Dataset& dataset) {
           {"failures", failures},
           {"capped", capped},
           {"folder", dataset.folder.string()}};
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 /// The pictures that are less exact than the recipe wants, worst first.
@@ -105,7 +110,7 @@ nlohmann::json to_json(const std::vector<Lacking>& all) {
   return list;
 }
 
-int dry_run(const Arguments& arguments, const Plan& plan) {
+int dry_run(const Arguments& arguments, const Plan& plan, const BuildOptions& options) {
   print_plan(arguments.json ? Stream::people : Stream::result, plan, arguments.verbose);
   const PlanCounts counts = count(plan);
   if (arguments.json)
@@ -116,7 +121,7 @@ int dry_run(const Arguments& arguments, const Plan& plan) {
                 {"stale", counts.stale},
                 {"manifest", to_json(plan.manifest)},
                 {"traced_samples", 0},
-                {"seconds", 0.0}});
+                {"seconds", seconds_since(options.started)}});
   else {
     say(Stream::result, "{}\n", summary(counts));
     print_manifest_line(plan);
@@ -127,6 +132,7 @@ int dry_run(const Arguments& arguments, const Plan& plan) {
 }  // namespace
 
 int run_build(const Arguments& arguments) {
+  const BuildOptions build_options{arguments.keep_going, arguments.force, arguments.copy};
   // What the command is for lies in files: a reader of its text who goes away does not end it.
   if (!arguments.dry_run) std::signal(SIGPIPE, SIG_IGN);
   const Shard shard = read_shard(arguments.shard);
@@ -136,7 +142,7 @@ int run_build(const Arguments& arguments) {
     Inputs inputs(*dataset.database, stamps_of(arguments));
     const Plan plan = make_plan(dataset, inputs, arguments.force, shard);
     warn_of_mended(plan);
-    return dry_run(arguments, plan);
+    return dry_run(arguments, plan, build_options);
   }
   Dataset dataset = open_dataset(arguments.request(), Access::build, disk);
   const auto waits_for = [&](const std::string& who) {
@@ -164,8 +170,7 @@ int run_build(const Arguments& arguments) {
     // Only now: planning may be ended anywhere, and needs nobody to wait for it.
     const std::atomic<bool>& stop = stop_on_signal();
     Progress progress(arguments.keep_going);
-    result = execute(dataset, plan, inputs, {arguments.keep_going, arguments.force, arguments.copy},
-                     disk, factory, progress, stop);
+    result = execute(dataset, plan, inputs, build_options, disk, factory, progress, stop);
   }
   for (const auto& [what, why] : result.failures)
     say(Stream::people, "dsbuild: error: {}: {}\n", what, why);

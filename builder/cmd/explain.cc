@@ -41,8 +41,8 @@ const PlannedImage& find_image(const Plan& plan, const Dataset& dataset,
   const fs::path folder = fs::weakly_canonical(dataset.folder, error);
   for (const PlannedImage& image : plan.images) {
     if (image.spec.id == wanted) return image;
-    for (const PlannedFile& planned : image.files)
-      if (planned.output.path == wanted || folder / planned.output.path == file) return image;
+    for (const OutputFile& output : image.keys.outputs)
+      if (output.path == wanted || folder / output.path == file) return image;
   }
   std::vector<std::string_view> ids;
   for (const PlannedImage& image : plan.images)

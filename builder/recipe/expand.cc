@@ -93,23 +93,26 @@ ModelLabel label_of(const Recipe& recipe, const std::string& model) {
   return {"", share < *recipe.split_test_fraction ? "test" : "train"};
 }
 
-ImageSpec make_image(const Recipe& recipe, const fs::path& model, std::size_t view,
-                     const fs::path& material, const fs::path& environment) {
-  ImageSpec image;
-  image.model_file = model;
-  image.material_file = material;
-  image.environment_folder = environment;
-  image.model_name = model.filename().string();
-  image.material_name = material_name(material);
-  image.environment_name = environment_name(environment);
-  image.view = recipe.view_names[view];
-  image.id = image.model_name + "/" + image.view;
-  if (recipe.assign_materials == Assign::all) image.id += "-" + image.material_name;
-  if (recipe.assign_environments == Assign::all) image.id += "-" + image.environment_name;
-  image.camera = recipe.cameras[view];
-  image.engine = recipe.engine;
-  image.engine.seed = top_53_bits(seeded_hash(recipe.seed, k_for_image, {image.id}));
-  return image;
+/// What an axis gives an image: the file and its name.
+struct Asset {
+  Shared<fs::path> path;
+  Shared<std::string> name;
+};
+
+std::vector<Asset> assets_of(const Axis& axis) {
+  std::vector<Asset> assets;
+  for (const fs::path& path : axis.candidates)
+    assets.push_back({path, axis.name(path)});
+  return assets;
+}
+
+/// What stands behind model and view in an id.
+std::string suffix(const Recipe& recipe, const std::string& material,
+                   const std::string& environment) {
+  std::string text;
+  if (recipe.assign_materials == Assign::all) text += "-" + material;
+  if (recipe.assign_environments == Assign::all) text += "-" + environment;
+  return text;
 }
 
 }  // namespace
@@ -127,36 +130,83 @@ std::string environment_name(const fs::path& folder) {
   return folder.filename().string();
 }
 
-std::vector<ImageSpec> expand(const Recipe& recipe) {
+void expand(const Recipe& recipe, const std::function<void(ImageSpec&&)>& visit) {
   DS_ASSERT(recipe.cameras.size() == recipe.view_names.size());
+  check_ids(recipe);
   const Axis materials{k_for_material, recipe.materials, material_name, recipe.assign_materials,
                        recipe.materials_per};
   const Axis environments{k_for_environment, recipe.environments, environment_name,
                           recipe.assign_environments, recipe.environments_per};
+  const std::vector<Asset> material_assets = assets_of(materials);
+  const std::vector<Asset> environment_assets = assets_of(environments);
+  const std::vector<Shared<std::string>> views(recipe.view_names.begin(), recipe.view_names.end());
   std::vector<fs::path> models = recipe.models;
   std::stable_sort(models.begin(), models.end(), [](const fs::path& a, const fs::path& b) {
     return a.filename() < b.filename();
   });
-  std::vector<ImageSpec> images;
-  std::set<std::string> ids;
+  ImageSpec image;
   for (const fs::path& model : models) {
     const std::string name = model.filename().string();
     const ModelLabel label = label_of(recipe, name);
+    image.model_file = model;
+    image.model_name = name;
+    image.class_path = label.class_path;
+    image.split = label.split;
     for (std::size_t view = 0; view < recipe.cameras.size(); ++view) {
+      image.view = views[view];
+      image.camera = recipe.cameras[view];
+      const auto places = assigned(recipe, environments, name, view);
       for (const std::size_t material : assigned(recipe, materials, name, view)) {
-        for (const std::size_t environment : assigned(recipe, environments, name, view)) {
-          ImageSpec image = make_image(recipe, model, view, recipe.materials[material],
-                                       recipe.environments[environment]);
-          image.class_path = label.class_path;
-          image.split = label.split;
-          if (!ids.insert(image.id).second)
-            fail(ErrorKind::recipe, "two images would have one name: {}", image.id);
-          images.push_back(std::move(image));
+        image.material_file = material_assets[material].path;
+        image.material_name = material_assets[material].name;
+        for (const std::size_t environment : places) {
+          image.environment_folder = environment_assets[environment].path;
+          image.environment_name = environment_assets[environment].name;
+          image.id = fmt::format("{}/{}{}", name, *image.view,
+                                 suffix(recipe, image.material_name, image.environment_name));
+          image.engine = recipe.engine;
+          image.engine.seed = top_53_bits(seeded_hash(recipe.seed, k_for_image, {image.id}));
+          visit(ImageSpec(image));
         }
       }
     }
   }
+}
+
+std::vector<ImageSpec> expand(const Recipe& recipe) {
+  std::vector<ImageSpec> images;
+  expand(recipe, [&](ImageSpec&& image) { images.push_back(std::move(image)); });
   return images;
+}
+
+std::size_t image_count(const Recipe& recipe) {
+  const auto each = [](Assign assign, const std::vector<fs::path>& candidates) {
+    return assign == Assign::all ? candidates.size() : std::min<std::size_t>(candidates.size(), 1);
+  };
+  return recipe.models.size() * recipe.cameras.size() *
+         each(recipe.assign_materials, recipe.materials) *
+         each(recipe.assign_environments, recipe.environments);
+}
+
+void check_ids(const Recipe& recipe) {
+  if (recipe.view_names.empty()) return;
+  const auto refuse = [&](const std::string& model, const std::string& text) {
+    fail(ErrorKind::recipe, "two images would have one name: {}/{}{}", model,
+         recipe.view_names.front(), text);
+  };
+  std::set<std::string> models;
+  for (const fs::path& model : recipe.models)
+    if (std::string name = model.filename().string(); !models.insert(name).second) refuse(name, "");
+  // Where one axis is "all", its names tell apart what it adds; of two, "a-b" and "c" read like "a"
+  // and "b-c".
+  if (recipe.assign_materials != Assign::all || recipe.assign_environments != Assign::all) return;
+  std::set<std::string> suffixes;
+  for (const fs::path& material : recipe.materials)
+    for (const fs::path& environment : recipe.environments) {
+      const std::string text =
+          suffix(recipe, material_name(material), environment_name(environment));
+      if (!suffixes.insert(text).second && !models.empty()) refuse(*models.begin(), text);
+    }
 }
 
 }  // namespace ds

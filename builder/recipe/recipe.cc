@@ -284,7 +284,7 @@ Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrid
   recipe.keep_film = settings.boolean("outputs.keep_film");
   diagnostics.throw_if_any();
   recipe.settings = canonical_settings(settings, recipe);
-  expand(recipe);  // finds images that would share an id
+  check_ids(recipe);
   return recipe;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "builder/recipe/camera_fit.h"
+#include "builder/recipe/shared.h"
 #include "manifests/classification.h"
 #include "tracer/render/render.h"
 #include "tracer/scene/mesh.h"
@@ -9,6 +10,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -87,15 +89,15 @@ std::string canonical_recipe(const Recipe& recipe);
 /// One image to make. A pure function of the recipe.
 struct ImageSpec {
   std::string id;  ///< "human.ply/0": the path of the picture under images/, less its ending
-  std::string model_name;  ///< file name, "human.ply"
-  std::filesystem::path model_file, material_file, environment_folder;
-  std::string material_name;     ///< file name less its ending
-  std::string environment_name;  ///< folder name
-  std::string view;
+  Shared<std::string> model_name;  ///< file name, "human.ply"
+  Shared<std::filesystem::path> model_file, material_file, environment_folder;
+  Shared<std::string> material_name;     ///< file name less its ending
+  Shared<std::string> environment_name;  ///< folder name
+  Shared<std::string> view;
   Camera camera;
-  EngineSettings engine;   ///< with this image's own seed, below 2^53
-  std::string class_path;  ///< "vehicle/car", "" where unclassified
-  std::string split;       ///< "train", "test" or "" where there is none
+  EngineSettings engine;           ///< with this image's own seed, below 2^53
+  Shared<std::string> class_path;  ///< "vehicle/car", "" where unclassified
+  Shared<std::string> split;       ///< "train", "test" or "" where there is none
 };
 
 /// All images, ordered by model name, then view, then (with assign = all) material, then
@@ -107,6 +109,12 @@ struct ImageSpec {
 /// The id is model/view, and -material and -environment behind it for each that is assigned "all".
 /// Throws Error(recipe) where two images would have one id, or an id's last part a dot.
 std::vector<ImageSpec> expand(const Recipe& recipe);
+/// The same, one image after another, without ever holding them all.
+void expand(const Recipe& recipe, const std::function<void(ImageSpec&&)>& visit);
+/// Throws what `expand` would throw.
+void check_ids(const Recipe& recipe);
+/// How many images `expand` gives.
+std::size_t image_count(const Recipe& recipe);
 
 /// Moves an image's camera to where its model fits, which is that sphere, where the recipe wants
 /// that; else nothing. Throws what `fit_camera` throws.

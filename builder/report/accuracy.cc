@@ -185,7 +185,7 @@ std::vector<PairChoice> representative_images(const std::vector<ImageSpec>& imag
   std::map<Pair, PairChoice> pairs;
   std::map<Pair, std::pair<std::uint64_t, std::string>> least;
   for (const ImageSpec& image : images) {
-    const Pair pair{image.environment_name, image.material_name};
+    const Pair pair{*image.environment_name, *image.material_name};
     const std::pair<std::uint64_t, std::string> rank{hash64_text("accuracy " + image.id), image.id};
     const auto found = least.find(pair);
     if (found == least.end() || rank < found->second) {
@@ -212,13 +212,13 @@ Accuracy measure_accuracy(const Recipe& recipe, Inputs& inputs, SceneTracer& tra
       fit_image(chosen.image, recipe,
                 inputs.model_sphere(chosen.image.model_file, recipe.normalise));
     told(fmt::format("{} of {}: {} in {}, {}", accuracy.pairs.size() + 1, pairs.size(),
-                     chosen.image.material_name, chosen.image.environment_name, chosen.image.id));
+                     *chosen.image.material_name, *chosen.image.environment_name, chosen.image.id));
     const Subject subject = subject_of(chosen.image, recipe, inputs);
     const ToneMap& tone_map =
         tone_map_of(recipe, inputs.environment(chosen.image.environment_folder));
     PairAccuracy pair;
-    pair.environment = chosen.image.environment_name;
-    pair.material = chosen.image.material_name;
+    pair.environment = *chosen.image.environment_name;
+    pair.material = *chosen.image.material_name;
     pair.image = chosen.image.id;
     pair.images = chosen.images;
     measure_ladder(pair, tracer, subject, tone_map, accuracy.options, stop);

@@ -86,7 +86,7 @@ class ProbeBuild {
     // Identities do not depend on the other models: these alone expand to the same images.
     std::set<std::filesystem::path> models;
     for (const ImageSpec& image : images)
-      models.insert(image.model_file);
+      models.insert(*image.model_file);
     dataset_.recipe.models.assign(models.begin(), models.end());
     dataset_.folder = folder / "out";
     dataset_.row.id = Hash128{0, static_cast<std::uint64_t>(spp)}.hex();
@@ -206,7 +206,7 @@ std::vector<Probe> probe_images(const Recipe& recipe, Inputs& inputs,
     probing.warm_up(image.id, watch);
   for (const ImageSpec& image : images) {
     watch.told(fmt::format("calibrating {} of {}: {} in {}, {}", probes.size() + 1, images.size(),
-                           image.material_name, image.environment_name, image.id));
+                           *image.material_name, *image.environment_name, image.id));
     probes.push_back(probing.probe(image.id, watch));
   }
   return probes;
@@ -216,7 +216,7 @@ std::vector<PairImages> images_to_probe(const std::vector<ImageSpec>& images) {
   using Ranked = std::pair<std::uint64_t, const ImageSpec*>;
   std::map<std::pair<std::string, std::string>, std::vector<Ranked>> pairs;
   for (const ImageSpec& image : images)
-    pairs[{image.environment_name, image.material_name}].emplace_back(
+    pairs[{*image.environment_name, *image.material_name}].emplace_back(
         hash64_text("probe " + image.id), &image);
   if (pairs.empty()) return {};
   const std::size_t most =
@@ -229,7 +229,7 @@ std::vector<PairImages> images_to_probe(const std::vector<ImageSpec>& images) {
     // Other models first: views of one scene say nothing of loading another.
     std::set<std::string> models;
     std::stable_partition(ranked.begin(), ranked.end(), [&](const Ranked& image) {
-      return models.insert(image.second->model_name).second;
+      return models.insert(*image.second->model_name).second;
     });
     PairImages of_pair{pair.first, pair.second, {}};
     for (std::size_t i = 0; i < std::min(most, ranked.size()); ++i)

@@ -357,6 +357,14 @@ TEST_F(BuildTest, CleansUpAfterAKilledBuildAndNotAfterARunningOne) {
   EXPECT_EQ(builds[1].outcome, "killed");
 }
 
+TEST_F(BuildTest, TellsTheTimeOfTheWholeCommand) {
+  BuildOptions options;
+  options.started -= std::chrono::hours(1);  // spent on planning
+  EXPECT_GE(build(options).seconds, 3600);
+  const Dataset dataset = open_dataset(request, Access::look, real_disk);
+  EXPECT_GE(dataset.database->builds(dataset.row.id)[0].seconds, 3600);
+}
+
 TEST_F(BuildTest, RecordsWhenAndWhereItWasBuilt) {
   build();
   const Dataset dataset = open_dataset(request, Access::look, real_disk);

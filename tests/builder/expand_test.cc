@@ -30,9 +30,9 @@ Recipe small_recipe(int model_count = 3, int view_count = 2) {
 }
 
 std::string describe(const ImageSpec& image) {
-  return fmt::format("{} {} {} {} {} {} {}", image.id, image.model_file.string(),
-                     image.material_file.string(), image.environment_folder.string(), image.split,
-                     image.engine.seed, image.class_path);
+  return fmt::format("{} {} {} {} {} {} {}", image.id, image.model_file->string(),
+                     image.material_file->string(), image.environment_folder->string(),
+                     *image.split, image.engine.seed, *image.class_path);
 }
 
 std::map<std::string, std::string> by_id(const Recipe& recipe) {
@@ -68,8 +68,8 @@ TEST(Expand, FillsInEachImage) {
   const ImageSpec image = expand(recipe)[1];
   EXPECT_EQ(image.model_name, "m0.off");
   EXPECT_EQ(image.model_file, "/models/m0.off");
-  EXPECT_EQ(image.material_name, image.material_file.stem());
-  EXPECT_EQ(image.environment_name, image.environment_folder.filename());
+  EXPECT_EQ(image.material_name, image.material_file->stem());
+  EXPECT_EQ(image.environment_name, image.environment_folder->filename());
   EXPECT_EQ(image.view, "1");
   EXPECT_EQ(image.camera.fov_deg, 33);
   EXPECT_EQ(image.engine.spp, 9);
@@ -129,8 +129,8 @@ TEST(Expand, RandomGivesOneMaterialAModelOrOneAView) {
   std::map<std::string, std::set<std::string>> of_model;
   std::map<std::string, int> models_of;
   for (const ImageSpec& image : expand(recipe)) {
-    of_model[image.model_name].insert(image.material_name);
-    if (image.view == "0") ++models_of[image.material_name];
+    of_model[*image.model_name].insert(*image.material_name);
+    if (image.view == "0") ++models_of[*image.material_name];
   }
   for (const auto& [model, materials] : of_model)
     EXPECT_EQ(materials.size(), 1u) << model;
@@ -141,7 +141,7 @@ TEST(Expand, RandomGivesOneMaterialAModelOrOneAView) {
   recipe.materials_per = ChoosePer::view;
   of_model.clear();
   for (const ImageSpec& image : expand(recipe))
-    of_model[image.model_name].insert(image.material_name);
+    of_model[*image.model_name].insert(*image.material_name);
   int with_all = 0;
   for (const auto& [model, materials] : of_model)
     with_all += materials.size() == 3 ? 1 : 0;
@@ -154,7 +154,7 @@ TEST(Expand, CycleTakesOneAfterTheOtherFromAStartOfTheModelsOwn) {
   std::map<std::string, int> starts;
   const auto images = expand(recipe);
   for (std::size_t i = 0; i < images.size(); i += 6) {
-    ++starts[images[i].material_name];
+    ++starts[*images[i].material_name];
     for (std::size_t view = 0; view + 3 < 6; ++view) {
       EXPECT_EQ(images[i + view].material_name, images[i + view + 3].material_name);
       EXPECT_NE(images[i + view].material_name, images[i + view + 1].material_name);
@@ -178,6 +178,16 @@ TEST(Expand, AllMakesAnImageForEachAndNamesIt) {
   recipe.assign_materials = Assign::random;
   recipe.assign_environments = Assign::all;
   EXPECT_EQ(expand(recipe)[1].id, "m0.off/0-garden");
+}
+
+TEST(Expand, CountsItsImagesBeforeItMakesThem) {
+  Recipe recipe = small_recipe(3, 4);
+  for (const Assign materials : {Assign::random, Assign::cycle, Assign::all})
+    for (const Assign environments : {Assign::random, Assign::cycle, Assign::all}) {
+      recipe.assign_materials = materials;
+      recipe.assign_environments = environments;
+      EXPECT_EQ(image_count(recipe), expand(recipe).size());
+    }
 }
 
 TEST(Expand, RefusesTwoImagesOfOneName) {
@@ -208,7 +218,7 @@ TEST(Expand, SplitsModelsByTheShareAskedFor) {
   recipe.split_test_fraction = 0.3;
   std::map<std::string, std::set<std::string>> splits;
   for (const ImageSpec& image : expand(recipe))
-    splits[image.model_name].insert(image.split);
+    splits[*image.model_name].insert(*image.split);
   int in_test = 0;
   for (const auto& [model, split] : splits) {
     ASSERT_EQ(split.size(), 1u) << model;
@@ -220,7 +230,7 @@ TEST(Expand, SplitsModelsByTheShareAskedFor) {
   Recipe larger = recipe;
   larger.split_test_fraction = 0.5;
   for (const ImageSpec& image : expand(larger)) {
-    if (splits[image.model_name].contains("test")) {
+    if (splits[*image.model_name].contains("test")) {
       EXPECT_EQ(image.split, "test");
     }
   }

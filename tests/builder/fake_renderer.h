@@ -50,7 +50,7 @@ class FakeRenderer : public Renderer {
   Geometry trace_geometry(const ImageSpec& image) override {
     calls_.geometry.push_back(image.id);
     Geometry geometry{image.engine.width, image.engine.height, {}, {}};
-    const std::uint64_t seed = hash64_text(read_text_file(image.model_file) + image.view);
+    const std::uint64_t seed = hash64_text(read_text_file(image.model_file) + *image.view);
     for (int i = 0; i < geometry.width * geometry.height; ++i) {
       const float value = unit(seed, static_cast<std::uint64_t>(i));
       geometry.mask.push_back(value > 0.5f ? 255 : 0);
@@ -68,7 +68,7 @@ class FakeRenderer : public Renderer {
  private:
   static std::string seed_text(const ImageSpec& image) {
     return read_text_file(image.model_file) + read_text_file(image.material_file) +
-           read_text_file(image.environment_folder / "environment.scn") + image.view +
+           read_text_file(*image.environment_folder / "environment.scn") + *image.view +
            fmt::format("{} {}", image.engine.spp, image.engine.seed);
   }
   static float unit(std::uint64_t seed, std::uint64_t i) {

@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/keys.h"
 
+#include "tracer/base/canonical.h"
+#include "tracer/device/program_text.h"
+#include "tracer/render/engine_text.h"
+#include "tracer/scene/sdl.h"
+
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
+#include <set>
 
 namespace ds {
 namespace {
@@ -20,7 +27,10 @@ class KeysTest : public testing::Test {
   ImageKeys keys() {
     Inputs inputs(database_);
     TextSet texts;
-    return KeyMaker(recipe_, inputs, texts).keys(image_);
+    KeyMaker maker(recipe_, inputs, texts);
+    ImageKeys keys = maker.keys(image_);
+    keys.kept = maker.kept_key(image_, keys);
+    return keys;
   }
 
   Database database_{fs::path()};
@@ -137,6 +147,61 @@ TEST_F(KeysTest, EachSettingMovesWhatItCanChangeAndNothingElse) {
       EXPECT_EQ(before.parts[i] != after.parts[i], part == c.part) << k_part_names[i];
     }
   }
+}
+
+/// As KeyMaker's header says them, from whole texts made for this image alone.
+ImageKeys keys_of_whole_texts(const Recipe& recipe, Inputs& inputs, const ImageSpec& image) {
+  const Scene scene = scene_without_model(inputs, image);
+  const std::string program = strip_comments(path_program_text(features_of(scene, image.camera)));
+  TextSet texts;
+  ImageKeys keys;
+  keys.parts[0] =
+      texts.add(canonical_model(inputs.model_geometry(image.model_file), recipe.normalise));
+  keys.parts[1] = texts.add(canonical_material(inputs.material(image.material_file)));
+  keys.parts[2] = texts.add(canonical_environment(inputs.environment(image.environment_folder)));
+  keys.parts[3] = texts.add(canonical_camera(image.camera));
+  keys.parts[4] = texts.add(canonical_engine(image.engine, program));
+  CanonicalText render, kept;
+  kept.add("kind", "film_sums");
+  for (std::size_t i = 0; i < 5; ++i) {
+    const Hash128 unstopped = hash_text(canonical_kept_engine(image.engine, program));
+    render.add(k_part_names[i], keys.parts[i].hex());
+    kept.add(k_part_names[i], (i < 4 ? keys.parts[i] : unstopped).hex());
+  }
+  keys.render = hash_text(render.text());
+  keys.kept = hash_text(kept.text());
+  return keys;
+}
+
+/// One KeyMaker for all images, whatever they share and do not.
+TEST_F(KeysTest, WhatIsSharedGivesTheKeysOfWholeTexts) {
+  Inputs inputs(database_);
+  TextSet texts;
+  KeyMaker maker(recipe_, inputs, texts);
+  std::vector<ImageSpec> images = expand(recipe_);
+  for (const ImageSpec& image : expand(recipe_)) {
+    images.push_back(image);
+    images.back().camera.lens_radius_m = 0.01;
+    images.push_back(image);
+    images.back().engine.target = ErrorTarget{};
+    images.push_back(image);
+    images.back().camera.position.x += 0.01;
+    images.back().engine.width += 1;
+  }
+  std::set<Hash128> different;
+  for (const ImageSpec& image : images) {
+    SCOPED_TRACE(image.id);
+    const ImageKeys wanted = keys_of_whole_texts(recipe_, inputs, image);
+    const ImageKeys made = maker.keys(image);
+    EXPECT_TRUE(std::equal(made.parts.begin(), made.parts.end() - 1, wanted.parts.begin()));
+    EXPECT_EQ(made.render, wanted.render);
+    EXPECT_EQ(maker.kept_key(image, made), wanted.kept);
+    different.insert(made.render);
+    maker.add_texts(image);
+    for (const Hash128 part : made.parts)
+      EXPECT_NE(texts.find(part), nullptr);
+  }
+  EXPECT_EQ(different.size(), images.size());
 }
 
 TEST_F(KeysTest, ALensMovesTheFilmAndNotTheMask) {

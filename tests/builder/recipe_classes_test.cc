@@ -17,7 +17,7 @@ using testing::HasSubstr;
 std::map<std::string, std::string> labels_of(const Recipe& recipe) {
   std::map<std::string, std::string> labels;
   for (const ImageSpec& image : expand(recipe))
-    labels[image.model_name] = image.class_path + " " + image.split;
+    labels[*image.model_name] = *image.class_path + " " + *image.split;
   return labels;
 }
 

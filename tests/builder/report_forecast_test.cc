@@ -267,7 +267,7 @@ class TimedRenderer : public FakeRenderer {
 
  private:
   void load(const ImageSpec& image) {
-    const std::string wanted = image.model_name + image.material_name + image.environment_name;
+    const std::string wanted = *image.model_name + *image.material_name + *image.environment_name;
     if (wanted != loaded_) clock += 0.5;
     loaded_ = wanted;
   }

@@ -4,6 +4,7 @@
 #include "tracer/base/canonical.h"
 #include "tracer/base/error.h"
 #include "tracer/device/program_text.h"
+#include "tracer/render/engine_text.h"
 #include "tracer/render/film.h"
 #include "tracer/scene/sdl.h"
 
@@ -139,8 +140,7 @@ std::string canonical_camera(const Camera& camera) {
   return text.text();
 }
 
-std::string canonical_engine(const Scene& scene, const Camera& camera,
-                             const EngineSettings& engine) {
+std::string canonical_engine(const EngineSettings& engine, std::string_view program) {
   CanonicalText text;
   if (engine.target) {
     text.add("error", engine.target->error);
@@ -148,11 +148,10 @@ std::string canonical_engine(const Scene& scene, const Camera& camera,
   } else {
     text.add("spp", engine.spp);
   }
-  return text.text() + canonical_kept_engine(scene, camera, engine);
+  return text.text() + canonical_kept_engine(engine, program);
 }
 
-std::string canonical_kept_engine(const Scene& scene, const Camera& camera,
-                                  const EngineSettings& engine) {
+std::string canonical_kept_engine(const EngineSettings& engine, std::string_view program) {
   CanonicalText text;
   text.add("width", engine.width);
   text.add("height", engine.height);
@@ -174,8 +173,19 @@ std::string canonical_kept_engine(const Scene& scene, const Camera& camera,
   if (engine.outlier_limit > 0) text.add("outlier_limit", engine.outlier_limit);
   text.add("math", engine.math == MathMode::strict ? "strict" : "fast");
   text.add("host_render_version", k_host_render_version);
-  text.add("program", strip_comments(path_program_text(features_of(scene, camera))));
+  text.add("program", program);
   return text.text();
+}
+
+std::string canonical_engine(const Scene& scene, const Camera& camera,
+                             const EngineSettings& engine) {
+  return canonical_engine(engine, strip_comments(path_program_text(features_of(scene, camera))));
+}
+
+std::string canonical_kept_engine(const Scene& scene, const Camera& camera,
+                                  const EngineSettings& engine) {
+  return canonical_kept_engine(engine,
+                               strip_comments(path_program_text(features_of(scene, camera))));
 }
 
 }  // namespace ds
