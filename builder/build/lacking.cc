@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 namespace ds {
@@ -28,19 +29,20 @@ Needs needs_of(const Scene& material) {
 }  // namespace
 
 std::vector<Lacking> find_lacking(const Plan& plan, Inputs& inputs) {
-  std::map<std::filesystem::path, Needs> needs;
+  std::unordered_map<std::string, Needs> needs;
   std::map<std::string, std::vector<std::string>> found;
   for (const PlannedImage& image : plan.images) {
     if (image.elsewhere || image.error) continue;
     const ImageSpec& spec = image.spec;
-    auto known = needs.find(spec.material_file);
+    auto known = needs.find(spec.material_file->native());
     if (known == needs.end())
       known =
-          needs.emplace(spec.material_file, needs_of(inputs.material(spec.material_file))).first;
+          needs.emplace(spec.material_file->native(), needs_of(inputs.material(spec.material_file)))
+              .first;
     Needs& need = known->second;
     if (!need.uvs || !need.seen.insert(spec.model_name).second) continue;
     if (!inputs.model_has_uvs(spec.model_file))
-      found[spec.material_file.filename().string()].push_back(spec.model_name);
+      found[spec.material_file->filename().string()].push_back(spec.model_name);
   }
   std::vector<Lacking> lacking;
   for (auto& [material, models] : found)
