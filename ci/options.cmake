@@ -47,6 +47,9 @@ function(ds_library name)
   if(DS_PCH)
     target_precompile_headers(${name} REUSE_FROM ds_precompiled)
   endif()
+  if(DS_UNITY)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  endif()
 endfunction()
 
 # ds_test(NAME SOURCES a_test.cc ... LIBS b ... [LABELS slow render]): one GoogleTest program, one CTest entry a test.

@@ -5,12 +5,7 @@ namespace ds {
 namespace {
 
 constexpr long k_database_offset = 0;
-constexpr std::uint64_t k_offset_mask = (std::uint64_t{1} << 62) - 1;
 constexpr long k_datasets_offset = (1L << 62) + 1;  // above those of all images
-
-long offset_of(Hash128 key) {
-  return static_cast<long>((key.low & k_offset_mask) + 1);
-}
 
 }  // namespace
 
@@ -19,7 +14,7 @@ Claims::Claim::~Claim() {
 }
 
 std::optional<Claims::Claim> Claims::try_image(Hash128 key) {
-  const long offset = offset_of(key);
+  const long offset = LockFile::offset_of(key);
   if (!file_.try_take(LockFile::Lock::exclusive, offset)) return std::nullopt;
   return std::make_optional<Claim>(*this, offset);
 }

@@ -234,9 +234,10 @@ bool Execution::is_in_place(PlacedFiles& placed, const PlannedImage& image) {
 
 /// Whether the folder is as the plan found it, and the plan found it all in place and listed: then
 /// nothing is looked at twice. Where there is an error target the records are read for the images
-/// that did not reach it.
+/// that did not reach it. With `copy` files may have been parted from the store, which changes
+/// their stamps.
 bool Execution::nothing_to_finish() const {
-  return result_.built == 0 && plan_.to_remove.empty() && !plan_.forgets &&
+  return result_.built == 0 && !options_.copy && plan_.to_remove.empty() && !plan_.forgets &&
          plan_.manifest.current() && !dataset_.recipe.engine.target &&
          std::none_of(plan_.images.begin(), plan_.images.end(), [](const PlannedImage& image) {
            return image.elsewhere || image.error || image.stale() || image.record;

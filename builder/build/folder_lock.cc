@@ -18,10 +18,6 @@ constexpr long k_end = std::numeric_limits<long>::max();
 /// How often a build that waits looks whether it may go on.
 constexpr std::chrono::milliseconds k_poll{100};
 
-long offset_of(Hash128 what) {
-  return 1 + static_cast<long>(what.low & ((std::uint64_t{1} << 62) - 1));
-}
-
 std::string read_who(int descriptor) {
   std::array<char, 4096> text{};
   const ssize_t size = ::pread(descriptor, text.data(), text.size(), 0);
@@ -58,7 +54,7 @@ FolderLock::Gate::~Gate() {
 
 std::optional<std::string> FolderLock::try_join(Hash128 what, const std::string& who) {
   const Gate gate(*this);
-  const long own = offset_of(what);
+  const long own = LockFile::offset_of(what);
   if (file_.others_hold(k_gate + 1, own) || file_.others_hold(own + 1, k_end))
     return read_who(file_.descriptor());
   file_.take(LockFile::Lock::shared, own);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tracer/base/hash.h"
+
+#include <cstdint>
 #include <filesystem>
 
 namespace ds {
@@ -18,6 +21,11 @@ class LockFile {
   LockFile(const LockFile&) = delete;
   LockFile& operator=(const LockFile&) = delete;
   LockFile& operator=(LockFile&&) = delete;
+
+  /// The byte that stands for a hash, in [1, 2^62]; two hashes that share one wait for each other.
+  static long offset_of(Hash128 hash) {
+    return static_cast<long>((hash.low & ((std::uint64_t{1} << 62) - 1)) + 1);
+  }
 
   enum class Lock { shared, exclusive };
   /// Waits for others.

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 /// The enumerator at the place of the choice's text. `names` in the enumeration's order.
 template <typename Enum, std::size_t N>
-Enum choice(const Settings& settings, std::string_view key,
+Enum chosen(const Settings& settings, std::string_view key,
             const std::array<std::string_view, N>& names) {
   const auto at = std::find(names.begin(), names.end(), settings.text(key));
   DS_ASSERT(at != names.end());
@@ -30,12 +30,12 @@ Enum choice(const Settings& settings, std::string_view key,
 
 NormaliseOptions read_normalise(const Settings& settings) {
   NormaliseOptions options;
-  options.up = choice<UpAxis, 2>(settings, "models.up", {"y", "z"});
+  options.up = chosen<UpAxis, 2>(settings, "models.up", {"y", "z"});
   options.size_m = settings.number("models.size_m");
   options.place_on_ground = settings.find("models.ground_z_m")->is_number();
   if (options.place_on_ground) options.ground_z_m = settings.number("models.ground_z_m");
-  options.centre = choice<Centring, 3>(settings, "models.centre", {"none", "mass", "box"});
-  options.normals = choice<Normals, 3>(settings, "models.normals", {"smooth", "keep", "flat"});
+  options.centre = chosen<Centring, 3>(settings, "models.centre", {"none", "mass", "box"});
+  options.normals = chosen<Normals, 3>(settings, "models.normals", {"smooth", "keep", "flat"});
   options.crease_deg = settings.number("models.crease_deg");
   return options;
 }
@@ -49,7 +49,7 @@ EngineSettings read_engine(const Settings& settings) {
     ErrorTarget& target = engine.target.emplace();
     target.error = settings.number("engine.error");
     target.max_spp = settings.integer("engine.max_spp");
-    target.region = choice<ErrorRegion, 2>(settings, "engine.error_region", {"image", "model"});
+    target.region = chosen<ErrorRegion, 2>(settings, "engine.error_region", {"image", "model"});
   }
   engine.depth_total = settings.integer("engine.depth_total");
   engine.depth_diffuse = settings.integer("engine.depth_diffuse");
@@ -59,7 +59,7 @@ EngineSettings read_engine(const Settings& settings) {
   engine.roulette_cap = static_cast<float>(settings.number("engine.roulette_cap"));
   engine.filter_width = static_cast<float>(settings.number("engine.filter_width"));
   engine.outlier_limit = static_cast<float>(settings.number("engine.outlier_limit"));
-  engine.math = choice<MathMode, 2>(settings, "engine.math", {"strict", "fast"});
+  engine.math = chosen<MathMode, 2>(settings, "engine.math", {"strict", "fast"});
   return engine;
 }
 
@@ -72,7 +72,7 @@ OutputSettings read_outputs(const Settings& settings) {
     settings.complain("outputs.image", "is off, and so are mask and depth; wanted one at least");
   if (settings.text("outputs.tone_map") == "environment") return outputs;
   ToneMap& map = outputs.tone_map.emplace();
-  map.kind = choice<ToneMap::Kind, 3>(settings, "outputs.tone_map",
+  map.kind = chosen<ToneMap::Kind, 3>(settings, "outputs.tone_map",
                                       {"linear", "reinhard02", "autolinear"});
   map.scale = static_cast<float>(settings.number("outputs.tone_map_scale"));
   map.prescale = static_cast<float>(settings.number("outputs.tone_map_prescale"));
@@ -222,11 +222,11 @@ void check_stem_names(const Settings& settings, std::string_view key,
 
 void read_assignments(Settings& settings, Recipe& recipe) {
   recipe.assign_materials =
-      choice<Assign, 3>(settings, "materials.assign", {"random", "cycle", "all"});
-  recipe.materials_per = choice<ChoosePer, 2>(settings, "materials.per", {"model", "view"});
+      chosen<Assign, 3>(settings, "materials.assign", {"random", "cycle", "all"});
+  recipe.materials_per = chosen<ChoosePer, 2>(settings, "materials.per", {"model", "view"});
   recipe.assign_environments =
-      choice<Assign, 3>(settings, "environments.assign", {"random", "cycle", "all"});
-  recipe.environments_per = choice<ChoosePer, 2>(settings, "environments.per", {"model", "view"});
+      chosen<Assign, 3>(settings, "environments.assign", {"random", "cycle", "all"});
+  recipe.environments_per = chosen<ChoosePer, 2>(settings, "environments.per", {"model", "view"});
   if (recipe.assign_materials == Assign::all) {
     check_stem_names(settings, "materials.assign", recipe.materials, material_name);
   }

@@ -10,7 +10,7 @@
 namespace ds {
 namespace {
 
-constexpr double k_width = 526, k_top = 46, k_row = 17, k_bottom = 40;
+constexpr double k_choice_width = 526, k_choice_top = 46, k_row = 17, k_choice_bottom = 40;
 /// Both columns, left to right edge.
 constexpr double k_time_left = 176, k_time_right = 332, k_bias_left = 356, k_bias_right = 504;
 /// A column is less than half as wide as a chart, and shares of a strict and a fast picture are as
@@ -28,12 +28,13 @@ std::string label_of(const Choice& choice) {
   return text;
 }
 
-class Drawing {
+class ChoiceDrawing {
  public:
-  Drawing(const std::string& title, const std::vector<ChoiceCost>& costs, const ChoiceAxes& axes)
+  ChoiceDrawing(const std::string& title, const std::vector<ChoiceCost>& costs,
+                const ChoiceAxes& axes)
       : costs_(costs),
-        bottom_(k_top + k_row * static_cast<double>(costs.size())),
-        svg_(k_width, bottom_ + k_bottom, title),
+        bottom_(k_choice_top + k_row * static_cast<double>(costs.size())),
+        svg_(k_choice_width, bottom_ + k_choice_bottom, title),
         time_(axes.time),
         bias_(axes.bias) {
     svg_.text(4, 15, Anchor::start, "title", title);
@@ -43,9 +44,9 @@ class Drawing {
     column(time_, k_time_left, k_time_right, "time over the recipe's");
     column(bias_, k_bias_left, k_bias_right, "change of the picture");
     const double one = at(time_, k_time_left, k_time_right, 1);
-    svg_.line(one, k_top, one, bottom_, "axis");
+    svg_.line(one, k_choice_top, one, bottom_, "axis");
     for (std::size_t i = 0; i < costs_.size(); ++i)
-      row(costs_[i], k_top + k_row * (static_cast<double>(i) + 0.5));
+      row(costs_[i], k_choice_top + k_row * (static_cast<double>(i) + 0.5));
     return svg_.str();
   }
 
@@ -59,7 +60,7 @@ class Drawing {
     for (const Tick& tick : axis.ticks) {
       if (tick.label.empty()) continue;
       const double x = at(axis, left, right, tick.value);
-      svg_.line(x, k_top, x, bottom_, "grid");
+      svg_.line(x, k_choice_top, x, bottom_, "grid");
       svg_.text(x, bottom_ + 14, Anchor::middle, "tick", tick.label);
     }
     svg_.text((left + right) / 2, bottom_ + 31, Anchor::middle, "label", axis.label);
@@ -109,7 +110,7 @@ ChoiceAxes choice_axes(const Accuracy& accuracy) {
 std::string choice_chart(const std::string& title, const std::vector<ChoiceCost>& costs,
                          const ChoiceAxes& axes) {
   DS_ASSERT(!costs.empty());
-  return Drawing(title, costs, axes).draw();
+  return ChoiceDrawing(title, costs, axes).draw();
 }
 
 }  // namespace ds

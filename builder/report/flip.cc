@@ -8,11 +8,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 namespace ds {
 namespace {
 
-constexpr double k_pi = 3.14159265358979323846;
 /// The paper's constants: the exponents q_c and q_f, the fraction p_c of the largest distance that
 /// is mapped to p_t, and the width of a feature in degrees.
 constexpr double k_qc = 0.7, k_qf = 0.5, k_pc = 0.4, k_pt = 0.95, k_feature_deg = 0.082;
@@ -108,16 +108,16 @@ constexpr double k_widest_b = 0.04;
 
 Plane seen(const Plane& plane, const Sensitivity& s) {
   const double ppd = k_flip_pixels_per_degree;
-  const int radius =
-      static_cast<int>(std::ceil(3 * std::sqrt(k_widest_b / (2 * k_pi * k_pi)) * ppd));
+  const int radius = static_cast<int>(
+      std::ceil(3 * std::sqrt(k_widest_b / (2 * std::numbers::pi * std::numbers::pi)) * ppd));
   const auto taps = [&](double b) {
-    return gaussian_taps(ppd * std::sqrt(b / (2 * k_pi * k_pi)), radius);
+    return gaussian_taps(ppd * std::sqrt(b / (2 * std::numbers::pi * std::numbers::pi)), radius);
   };
   const auto weight = [&](double a, double b, const Taps& t) {
     double sum = 0;
     for (const double tap : t)
       sum += tap;
-    return a * std::sqrt(k_pi / b) * sum * sum;
+    return a * std::sqrt(std::numbers::pi / b) * sum * sum;
   };
   const Taps first = taps(s.b1);
   const double w1 = weight(s.a1, s.b1, first);

@@ -194,7 +194,7 @@ class BuildTest(TinyCase):
             time.sleep(1.0)
             process.send_signal(number)
             out, err = process.communicate(timeout=60)
-            self.assertEqual(process.returncode, 1, err)
+            self.assertEqual(process.returncode, -number, err)  # by dying of the signal
             self.assertIn("stopped", err)
             counts = json.loads(out.splitlines()[-1])
             self.assertTrue(counts["stopped"])

@@ -11,8 +11,6 @@
 namespace ds {
 namespace {
 
-constexpr double k_pi = std::numbers::pi;
-
 /// sin of the polar angle at row y of an image of this height, by the kernels' own polynomial: the
 /// same on every machine.
 double polar_sine(double y, int height) {
@@ -121,7 +119,8 @@ LightRow infinite_row(const Scene& scene, const Light& light, double scene_radiu
     rows.push_back(std::accumulate(row.begin(), row.end(), 0.0));
   }
   add_cumulative(rows, tables);
-  const double cell_angle = (2 * k_pi / image.width) * (k_pi / image.height);
+  const double cell_angle =
+      (2 * std::numbers::pi / image.width) * (std::numbers::pi / image.height);
   p.add(tables.offset());
   for (const double sine : cells.sines)
     tables.add(cells.total > 0 ? static_cast<float>(sine / (cells.total * cell_angle)) : 0.0f);
@@ -141,8 +140,8 @@ LightRow infinite_row(const Scene& scene, const Light& light, double scene_radiu
     for (std::size_t column = 0; column < 3; ++column)
       p.add(static_cast<float>(light.light_to_world.m[column * 4 + row]));
   // What falls on a disc of the scene's radius: power, as for the others.
-  result.weight =
-      cells.total * cell_angle * luminance(light.color) * k_pi * scene_radius * scene_radius;
+  result.weight = cells.total * cell_angle * luminance(light.color) * std::numbers::pi *
+                  scene_radius * scene_radius;
   return result;
 }
 

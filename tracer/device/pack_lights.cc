@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace ds {
@@ -28,12 +29,10 @@ void add_cumulative(const std::vector<double>& weights, Words& tables) {
 
 namespace {
 
-constexpr double k_pi = 3.14159265358979323846;
-
 LightRow sun_row(const Light& light, double scene_radius) {
   LightRow row{"sun", 0, {}};
   const double one_minus_cos = 1.0 - double{light.cos_total};
-  const double solid_angle = 2 * k_pi * one_minus_cos;
+  const double solid_angle = 2 * std::numbers::pi * one_minus_cos;
   const Vec3d z = to_double(light.direction);
   const Vec3d x = normalized(cross(std::fabs(z.x) > 0.9 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0}, z));
   row.parameters.add(light.color);
@@ -43,12 +42,13 @@ LightRow sun_row(const Light& light, double scene_radius) {
   row.parameters.add(static_cast<float>(one_minus_cos));
   row.parameters.add(static_cast<float>(one_minus_cos * (2 - one_minus_cos)));
   row.parameters.add(static_cast<float>(1 / solid_angle));
-  row.weight = luminance(light.color) * solid_angle * k_pi * scene_radius * scene_radius;
+  row.weight =
+      luminance(light.color) * solid_angle * std::numbers::pi * scene_radius * scene_radius;
   return row;
 }
 
 LightRow point_row(const Light& light) {
-  LightRow row{"point", 4 * k_pi * luminance(light.color), {}};
+  LightRow row{"point", 4 * std::numbers::pi * luminance(light.color), {}};
   row.parameters.add(light.color);
   row.parameters.add(light.position);
   return row;
@@ -83,7 +83,7 @@ LightRow mesh_row(const Scene& scene, const Object& object, std::uint32_t first_
                                        to_double(object.mesh.positions[t[2]]) - p0)));
   }
   const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
-  LightRow row{"mesh", luminance(material.emission.constant) * area * k_pi, {}};
+  LightRow row{"mesh", luminance(material.emission.constant) * area * std::numbers::pi, {}};
   row.parameters.add(material.emission.constant);
   row.parameters.add(static_cast<float>(area));
   row.parameters.add(static_cast<std::uint32_t>(areas.size()));

@@ -4,6 +4,8 @@
 #include "tracer/scene/sdl_math.h"
 #include "tracer/scene/spectrum.h"
 
+#include <algorithm>
+
 namespace ds {
 namespace {
 
@@ -20,10 +22,6 @@ double transmittance(double nm, double mass, double turbidity) {
   const double from_peak = (nm - 598.0) / 40.0;
   const double ozone = 0.35 * 0.118 * portable::exp(-0.5 * from_peak * from_peak);
   return portable::exp(-(rayleigh + aerosol + ozone) * mass);
-}
-
-double positive(double value) {
-  return value > 0 ? value : 0;
 }
 
 }  // namespace
@@ -44,7 +42,8 @@ Vec3d sun_radiance(Vec3d direction, double turbidity) {
   const Vec3d rgb = spectrum_to_rgb([&](double nm) {
     return black_body_radiance(nm, 5778) * transmittance(nm, mass, turbidity);
   });
-  return Vec3d{positive(rgb.x), positive(rgb.y), positive(rgb.z)} * k_solar_tint * k_photometric;
+  return Vec3d{std::max(0.0, rgb.x), std::max(0.0, rgb.y), std::max(0.0, rgb.z)} * k_solar_tint *
+         k_photometric;
 }
 
 }  // namespace ds
