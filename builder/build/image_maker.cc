@@ -249,12 +249,10 @@ ImageWork ImageMaker::make(const PlannedImage& image, bool force,
 }
 
 void ImageMaker::part_from_store(const PlannedImage& image) {
-  for (const PlannedFile& file : image.files) {
-    const std::optional<Product> product = dataset_.database->find_product(file.output.key);
-    if (file.state == FileState::in_place && product &&
-        dataset_.store->is_object(dataset_.folder / file.output.path, product->object))
-      place({file.output.path, image.spec.id, file.output.kind, file.output.key, product->object,
-             std::nullopt});
+  for (const OutputFile& output : image.keys.outputs) {
+    const std::optional<Product> product = dataset_.database->find_product(output.key);
+    if (product && dataset_.store->is_object(dataset_.folder / output.path, product->object))
+      place({output.path, image.spec.id, output.kind, output.key, product->object, std::nullopt});
   }
 }
 

@@ -33,9 +33,12 @@ std::optional<std::string> read_licence(const fs::path& file) {
   return std::nullopt;
 }
 
-std::optional<std::string> licence_near(const fs::path& folder) {
+/// Beside the asset or one folder up; an asset that is a folder may hold its own.
+std::optional<std::string> licence_near(const fs::path& folder, bool is_asset) {
   std::error_code error;
-  for (const fs::path& place : {folder, folder.parent_path()})
+  std::vector<fs::path> places{folder, folder.parent_path()};
+  if (is_asset) places.push_back(places.back().parent_path());
+  for (const fs::path& place : places)
     for (const char* name : k_names)
       if (fs::is_regular_file(place / name, error)) return read_licence(place / name);
   return std::nullopt;
@@ -50,9 +53,10 @@ std::vector<std::pair<std::string, std::string>> licences_beside(
   std::vector<std::pair<std::string, std::string>> licences;
   std::error_code error;
   for (const fs::path& asset : assets) {
-    const fs::path folder = fs::is_directory(asset, error) ? asset : asset.parent_path();
+    const bool is_folder = fs::is_directory(asset, error);
+    const fs::path folder = is_folder ? asset : asset.parent_path();
     const auto [entry, is_new] = known.try_emplace(folder);
-    if (is_new) entry->second = licence_near(folder);
+    if (is_new) entry->second = licence_near(folder, is_folder);
     if (entry->second)
       licences.emplace_back(fmt::format("{}/{}", kind, asset.filename().string()), *entry->second);
   }

@@ -72,6 +72,11 @@ int run_accuracy(const Arguments& arguments) {
   if (csv_file == report)
     fail(ErrorKind::usage, "-o {}: wanted the name of a page, found that of its numbers",
          report.string());
+  // Said now, not when everything is measured.
+  for (const fs::path& file : {report, csv_file})
+    if (std::error_code error; fs::is_directory(file, error))
+      fail(ErrorKind::usage, "-o {}: wanted the name of a page, found the folder {}",
+           report.string(), file.string());
   Inputs inputs(*dataset.database);
   TracerOptions options;
   options.device = arguments.device;

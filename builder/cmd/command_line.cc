@@ -108,6 +108,7 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
       return;
     case Option::rerender:
       verb.add_option("--rerender", to.rerender, "trace N images again and compare their bytes")
+          ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 62U))
           ->type_name("N");
       return;
     case Option::report_file:

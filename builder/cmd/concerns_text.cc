@@ -7,13 +7,15 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string_view>
 
 namespace ds {
 namespace {
 
 struct ConcernText {
   const char* name;
-  const char* text;  ///< behind "2 of 8 "
+  const char* text;             ///< behind "2 of 8 "
+  const char* allowed_by = "";  ///< what a recipe says where it is meant
 };
 constexpr ConcernText k_texts[] = {
     {"mask_empty", "images show nothing of their model, the mask is empty"},
@@ -21,24 +23,38 @@ constexpr ConcernText k_texts[] = {
     {"mask_small", "images show their model on less than 1 % of the picture"},
     {"picture_black", "pictures are black"},
     {"picture_white", "pictures are clipped at white on more than a quarter"},
-    {"models_absent", "models that the class files list have no file"},
-    {"models_unlisted", "model files stand in no class file"},
-    {"classes_empty", "classes have no image"},
+    {"models_absent", "models that the class files list have no file",
+     "classes.missing = \"ignore\""},
+    {"models_unlisted", "model files stand in no class file", "classes.unlisted = \"keep\""},
+    {"classes_empty", "classes have no image", "classes.missing = \"ignore\""},
 };
 
+const ConcernText& text_of(const Concern& concern) {
+  const auto* const at = std::find_if(std::begin(k_texts), std::end(k_texts),
+                                      [&](const auto& one) { return one.name == concern.name; });
+  DS_ASSERT(at != std::end(k_texts));
+  return *at;
+}
+
+/// " (classes.missing = "ignore" in the recipe says that it is meant)", where something does.
+std::string way_out(const Concern& concern) {
+  const std::string_view allowed_by = text_of(concern).allowed_by;
+  return allowed_by.empty() ? ""
+                            : fmt::format(" ({} in the recipe says that it is meant)", allowed_by);
+}
+
+/// A class without images is one whose models are absent.
 bool is_allowed(const Concern& concern, const ClassCoverage& coverage) {
-  return (concern.name == "models_absent" && coverage.missing_allowed) ||
+  return ((concern.name == "models_absent" || concern.name == "classes_empty") &&
+          coverage.missing_allowed) ||
          (concern.name == "models_unlisted" && coverage.unlisted_allowed);
 }
 
 }  // namespace
 
 std::string to_text(const Concern& concern) {
-  const auto* const at = std::find_if(std::begin(k_texts), std::end(k_texts),
-                                      [&](const auto& one) { return one.name == concern.name; });
-  DS_ASSERT(at != std::end(k_texts));
-  std::string text = fmt::format("{} of {} {}: {}", concern.count, concern.of, at->text,
-                                 fmt::join(concern.examples, ", "));
+  std::string text = fmt::format("{} of {} {}: {}", concern.count, concern.of,
+                                 text_of(concern).text, fmt::join(concern.examples, ", "));
   if (concern.count > concern.examples.size())
     text += fmt::format(" and {} more", concern.count - concern.examples.size());
   return text;
@@ -59,9 +75,9 @@ std::size_t tell_concerns(const std::vector<Concern>& concerns, const Recipe& re
       say(Stream::people, "{}\n", to_text(concern));
     } else if (strict) {
       ++errors;
-      say(Stream::people, "dsbuild: error: {} (--strict)\n", to_text(concern));
+      say(Stream::people, "dsbuild: error: {}{} (--strict)\n", to_text(concern), way_out(concern));
     } else {
-      warn(to_text(concern));
+      warn(to_text(concern) + way_out(concern));
     }
   }
   return errors;

@@ -77,7 +77,8 @@ void print_findings(const VerifyResult& result) {
   if (result.findings.empty())
     say(Stream::result, "all as the manifest says\n");
   else
-    say(Stream::result, "{} differences\n", result.findings.size());
+    say(Stream::result, "{} difference{}\n", result.findings.size(),
+        result.findings.size() == 1 ? "" : "s");
 }
 
 }  // namespace

@@ -172,8 +172,8 @@ std::string unused_text(const Listing& listing, const AssetKind& kind) {
       count += files;
       endings.push_back(fmt::format("{} {}", files, ending.empty() ? "without" : ending));
     }
-    parts.push_back(fmt::format("{} files of other endings ({}); .ply and .off are read", count,
-                                fmt::join(endings, ", ")));
+    parts.push_back(fmt::format("{} file{} of other endings ({}); .ply and .off are read", count,
+                                count == 1 ? "" : "s", fmt::join(endings, ", ")));
   }
   if (listing.dead_links > 0)
     parts.push_back(fmt::format("{} links that lead nowhere", listing.dead_links));

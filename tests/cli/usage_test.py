@@ -118,6 +118,7 @@ class UsageTest(TinyCase):
                           ["build", self.recipe, "--set", "engine.spp=0"],
                           ["build", self.recipe, "--set", "engine.ssp=4"],
                           ["verify", self.recipe, "--rerender", "some"],
+                          ["verify", self.recipe, "--rerender", "-1"],
                           ["accuracy", self.recipe, "--against", "hours"], ["accuracy", self.recipe, "--spp", "1"],
                           ["accuracy", self.recipe, "-o", "report.csv"],
                           ["plan", self.recipe, "--error", "0"], ["plan", self.recipe, "--error", "two"],
