@@ -5,6 +5,7 @@
 #include "builder/build/store_database.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
+#include "tracer/base/hash.h"
 #include "tracer/base/log.h"
 
 #include <random>
@@ -97,13 +98,25 @@ bool same_place(const fs::path& a, const fs::path& b) {
          (a.filename() == b.filename() && fs::equivalent(a.parent_path(), b.parent_path(), error));
 }
 
+/// Whether both are files that can be read, and not of the same bytes.
+bool are_two_files(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (!fs::is_regular_file(a, error) || !fs::is_regular_file(b, error)) return false;
+  try {
+    return hash_file(a).xxh128 != hash_file(b).xxh128;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 /// Where a path of when the folder was built leads now: to the same place seen from the folder,
-/// where folder and path were moved together, else where it led.
+/// where folder and path were moved or copied together, else where it led. A file that lies there
+/// by chance while the one it led to is where it was, and of other bytes, was not moved.
 fs::path moved(const fs::path& path, const Pointer& pointer, const fs::path& folder) {
   if (pointer.folder.empty()) return path;
   const fs::path beside = (folder / path.lexically_relative(pointer.folder)).lexically_normal();
   std::error_code error;
-  return fs::exists(beside, error) ? beside : path;
+  return fs::exists(beside, error) && !are_two_files(path, beside) ? beside : path;
 }
 
 /// Whether the folder with this pointer belongs to the recipe, as far as the pointer tells.
@@ -283,9 +296,7 @@ std::optional<fs::path> recipe_left_behind(const fs::path& folder) {
   if (!pointer || pointer->folder.empty()) return std::nullopt;
   const fs::path place = place_of(folder);
   if (pointer->folder == place) return std::nullopt;
-  std::error_code error;
-  const fs::path beside = place / pointer->recipe.lexically_relative(pointer->folder);
-  if (fs::exists(beside.lexically_normal(), error)) return std::nullopt;
+  if (moved(pointer->recipe, *pointer, place) != pointer->recipe) return std::nullopt;
   return pointer->recipe;
 }
 

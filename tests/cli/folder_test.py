@@ -81,6 +81,20 @@ class FolderTest(TinyCase):
         self.at(self.folder, "build", "tiny/recipe.toml")
         self.assertIn(f"folder   {self.folder}/out/tiny", self.at(self.tiny, "status", "recipe.toml").stdout)
 
+    def test_a_moved_folder_takes_no_recipe_that_lies_there_by_chance(self):
+        # recipe.toml is two folders above out/tiny, and so is another one above elsewhere/deep/tiny.
+        self.assertEqual(self.at(self.tiny, "build", "recipe.toml").returncode, 0)
+        other = self.folder / "elsewhere"
+        shutil.copytree(self.tiny, other, ignore=shutil.ignore_patterns("out"))
+        recipe = other / "recipe.toml"
+        recipe.write_text(recipe.read_text() + "# another\n")
+        (other / "deep").mkdir()
+        os.rename(self.tiny / "out/tiny", other / "deep/tiny")
+        self.assertEqual(self.at(other, "build", "recipe.toml", "-o", "deep/tiny").returncode, 2)
+        self.assertIn(f"recipe   {self.tiny}/recipe.toml", self.at(other, "status", "deep/tiny").stdout)
+        run = self.at(other, "verify", "deep/tiny")
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+
     def test_two_recipes_that_link_to_one_file_are_two(self):
         other = self.folder / "other"
         shutil.copytree(self.tiny, other)

@@ -152,11 +152,33 @@ void set_exr(ImageMeaning& meaning, const ExrHeader& header, const DecodedImage&
   meaning.offset_y = header.data.y0 - header.display.y0;
   meaning.premultiplied = true;
   meaning.cube = header.environment == ExrEnvironment::cube;
+  // A file of parts may begin with its depths or a matte; which part is the picture it does not say.
+  const bool by_name =
+      meaning.color_channels == 3 || without_layer(decoded.channel_names).front() == "Y";
+  if (header.parts > 1 && !by_name)
+    fail(ErrorKind::asset, "{}: wanted the channels R, G, B or Y in its first part, found {}", name,
+         fmt::join(decoded.channel_names, ", "));
   if (header.parts > 1)
     meaning.unused += fmt::format("{}{} of {} parts", meaning.unused.empty() ? "" : ", ",
                                   header.parts - 1, header.parts);
   if (header.chromaticities && meaning.color_channels == 3)
     set_colors(meaning, *header.chromaticities, name);
+}
+
+/// Whether a header line scales the colours: EXPOSURE and COLORCORR say what the pixels were
+/// multiplied by. Renderers take the pixels as they are, so a light is as bright here as there.
+bool scales_colors(std::string_view line) {
+  for (const std::string_view key : {std::string_view("EXPOSURE="), std::string_view("COLORCORR=")})
+    if (line.starts_with(key)) {
+      const std::string values(line.substr(key.size()));
+      const char* at = values.c_str();
+      for (char* next = nullptr;; at = next) {
+        const double value = std::strtod(at, &next);
+        if (next == at) return false;
+        if (value != 1) return true;
+      }
+    }
+  return false;
 }
 
 /// Radiance's header lines, up to the empty one.
@@ -167,6 +189,8 @@ void set_hdr(ImageMeaning& meaning, std::string_view text, const std::string& na
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(end + 1);
     if (line.empty() || line == "\r") return;
+    if (scales_colors(line))
+      meaning.unused += fmt::format("{}header lines {}", meaning.unused.empty() ? "" : ", ", line);
     if (!line.starts_with(k_primaries)) continue;
     Chromaticities found{};
     const char* at = line.data() + k_primaries.size();

@@ -152,6 +152,27 @@ TEST_F(Meaning, RadiancePrimariesAreConverted) {
               HasSubstr("found XYZ"));
 }
 
+TEST_F(Meaning, RadianceScalesThatNobodyAppliesAreSaid) {
+  const std::string pixel("\x80\x80\x80\x81", 4);
+  const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n";
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(
+      at(loaded(head + "EXPOSURE=10\nCOLORCORR= 1 2 1\n\n-Y 1 +X 1\n" + pixel, "a.hdr"), 0, 0),
+      1.0f);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              HasSubstr("header lines EXPOSURE=10, header lines COLORCORR= 1 2 1 are not used"));
+  testing::internal::CaptureStderr();
+  loaded(head + "EXPOSURE=1.000\nCOLORCORR=1 1 1\n\n-Y 1 +X 1\n" + pixel, "b.hdr");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(Meaning, AFirstPartWithoutColoursIsNoPicture) {
+  // Two parts of 2 x 1 pixels: "depth" with Z = 0.9, then "beauty" with R = G = B = 0.4.
+  const std::string file = read_text_file(std::filesystem::path(DS_SOURCE_DIR) /
+                                          "tests/fuzz/corpus/image/two_parts.exr");
+  EXPECT_THAT(error_of(file), HasSubstr("in its first part, found Z"));
+}
+
 TEST_F(Meaning, ChannelsAreUsedByTheirNamesOrRefused) {
   ExrFile file;
   file.value = [](const std::string& channel, int, int) {
