@@ -168,6 +168,19 @@ void check_owner(const DatasetRequest& request, const fs::path& folder, const Re
        folder.string(), owner.string(), recipe.file.string());
 }
 
+/// Throws where the folder holds what a build would write over and no build is known to have put
+/// there: somebody's own files, or a dataset handed on without its `.dsbuild`.
+void check_unclaimed(const DatasetRequest& request, const fs::path& folder) {
+  std::error_code error;
+  if (request.adopt || fs::exists(pointer_path(folder), error)) return;
+  for (const char* name : {"images", "manifest"})
+    if (fs::exists(folder / name, error))
+      fail(ErrorKind::usage,
+           "{}: is there already, and {} does not say that dsbuild made it; take another folder "
+           "(-o), or hand this one over with build --adopt",
+           (folder / name).string(), pointer_path(folder).string());
+}
+
 /// Relative paths in overrides start from the folder the build was started in.
 class WorkingFolder {
  public:
@@ -261,6 +274,7 @@ Dataset open_recipe(const DatasetRequest& request, Access access, Disk& disk) {
   const bool has_store = fs::is_directory(pointer.store, error);
   if (access != Access::inputs && known && !known->recipe.empty())
     check_owner(request, dataset.folder, dataset.recipe, known, nullptr);
+  if (access == Access::build) check_unclaimed(request, dataset.folder);
   if (access != Access::build && !has_store)
     dataset.database = std::make_unique<Database>(fs::path());
   else

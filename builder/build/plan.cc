@@ -163,6 +163,17 @@ void Planner::plan(PlannedImage& image) {
     image.reasons.emplace_back("its film is not in the store");
 }
 
+/// Else it would be found when the image is traced and cannot be put into its folder.
+void check_names(const std::vector<OutputFile>& outputs) {
+  constexpr std::size_t k_longest_name = 255;  // NAME_MAX of Linux's file systems
+  for (const OutputFile& output : outputs) {
+    const std::size_t bytes = output.path.size() - (output.path.rfind('/') + 1);
+    if (bytes > k_longest_name)
+      fail(ErrorKind::recipe, "{}: its name must be of at most {} bytes, got {}", output.path,
+           k_longest_name, bytes);
+  }
+}
+
 }  // namespace
 
 std::uint64_t PlannedImage::samples() const {
@@ -192,6 +203,7 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
         image.spec.engine.target->tone_map =
             tone_map_of(dataset.recipe, inputs.environment(image.spec.environment_folder));
       image.keys = keys.keys(image.spec);
+      check_names(image.keys.outputs);
       if (const MendedDamage& damage = inputs.model_damage(image.spec.model_file); !damage.empty())
         plan.mended.try_emplace(image.spec.model_name, image.spec.model_file, damage);
       planner.plan(image);

@@ -183,6 +183,18 @@ class BuildTest(TinyCase):
         except sqlite3.OperationalError:  # it is being created
             return 0
 
+    def test_a_name_that_no_folder_takes_is_told_beforehand(self):
+        # "1-" + 247 + ".png" has 253 bytes, but ".mask.png" makes 258 of it.
+        (self.tiny / "materials" / ("m" * 247 + ".mat")).write_bytes((self.tiny / "materials/red.mat").read_bytes())
+        every = ["--set", "materials.assign=all"]
+        plan = self.run_it("plan", self.recipe, "-o", self.out, *every)
+        self.assertEqual(plan.code, 1, plan)
+        self.assertIn("at most 255 bytes, got 258", plan.out + plan.err)
+        run = self.run_it("build", self.recipe, "-o", self.out, "-k", "--json", *every)
+        self.assertEqual(run.code, 1, run)
+        self.assertEqual(run.json["failed"], IMAGES)
+        self.assertEqual(run.json["built"], run.json["images"] - IMAGES)
+
     def test_interrupt_ends_cleanly(self):
         # Large enough that the signal finds the first image under way.
         slow = ["--set", "engine.spp=4000", "--set", "engine.width=128", "--set", "engine.height=128"]

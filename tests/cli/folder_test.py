@@ -95,6 +95,23 @@ class FolderTest(TinyCase):
         run = self.at(other, "verify", "deep/tiny")
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
 
+    def test_files_that_no_build_made_are_not_written_over(self):
+        for name in ("images/box.off/0.png", "manifest/dataset.json"):
+            mine = self.folder / "mine" / name
+            mine.parent.mkdir(parents=True)
+            mine.write_text("precious")
+            run = self.run_it("build", self.recipe, "-o", self.folder / "mine")
+            self.assertEqual(run.code, 2, run)
+            self.assertIn(str(mine.parents[len(name.split("/")) - 2]), run.err)
+            self.assertIn("--adopt", run.err)
+            self.assertEqual(mine.read_text(), "precious")
+            self.assertFalse((self.folder / "mine/.dsbuild").exists())
+            shutil.rmtree(self.folder / "mine")
+        self.build()
+        shutil.rmtree(self.out / ".dsbuild")
+        self.assertEqual(self.run_it("build", self.recipe, "-o", self.out).code, 2)
+        self.assert_counts(self.run_it("build", self.recipe, "-o", self.out, "--adopt", "--json").json, built=IMAGES)
+
     def test_two_recipes_that_link_to_one_file_are_two(self):
         other = self.folder / "other"
         shutil.copytree(self.tiny, other)
