@@ -12,6 +12,10 @@ target_compile_options(ds_options INTERFACE -ffp-contract=off -fno-fast-math
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(ds_options INTERFACE -Wno-restrict -Wno-array-bounds -Wno-stringop-overread -Wno-stringop-overflow)
 endif()
+# Files compiled together are included by one, and GCC takes their anonymous namespaces for those of headers.
+if(DS_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(ds_options INTERFACE -Wno-subobject-linkage)
+endif()
 if(DS_WERROR)
   target_compile_options(ds_options INTERFACE -Werror)
 endif()
