@@ -13,8 +13,8 @@ namespace ds {
 /// made are absent: of an image without a mask, or in the records of an older dsbuild.
 struct PixelCounts {
   std::optional<std::uint64_t> lit;  ///< of the picture: some channel is above 4 of 255
-  std::optional<std::uint64_t>
-      white;  ///< of the picture: clipped in every channel (clipped_pixels)
+  /// Of the picture: clipped in every channel (clipped_pixels).
+  std::optional<std::uint64_t> white;
   std::optional<std::uint64_t> model;  ///< of the mask: the model is seen
   std::optional<std::uint64_t> frame;  ///< of those, in the first or last row or column
 

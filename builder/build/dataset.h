@@ -19,10 +19,10 @@ namespace ds {
 struct DatasetRequest {
   std::filesystem::path target;        ///< a recipe, or the folder an earlier build wrote
   std::vector<std::string> overrides;  ///< --set; only with a recipe
-  std::filesystem::path
-      output_folder;  ///< -o; empty: out/<name>, or the target where it is a folder
-  std::filesystem::path
-      store_folder;    ///< --store; empty: as before, at first <output folder>/.dsbuild
+  /// -o; empty: out/<name>, or the target where it is a folder.
+  std::filesystem::path output_folder;
+  /// --store; empty: as before, at first <output folder>/.dsbuild.
+  std::filesystem::path store_folder;
   bool adopt = false;  ///< --adopt: take the folder though it belongs to another recipe
 };
 

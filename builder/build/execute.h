@@ -35,9 +35,8 @@ struct BuildResult {
   double seconds = 0;    ///< of all of it, planning too
   std::string device;    ///< empty where nothing was traced
   bool stopped = false;  ///< by the user
-  std::vector<std::pair<std::string, std::string>>
-      failures;  ///< what ("human.ply/0", "14 images, ..."), why
-
+  /// What ("human.ply/0", "14 images, ..."), why.
+  std::vector<std::pair<std::string, std::string>> failures;
   std::vector<Concern> concerns;  ///< of all images that the manifest lists
 
   /// Images that max_spp ended before engine.error was reached, and the upper end of their error.

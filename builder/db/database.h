@@ -33,8 +33,8 @@ struct Product {
   Hash128 pixels;                      ///< of its decoded pixels
   double tone_map_scale = 1;           ///< images: the factor the tone map used
   std::uint64_t rejected_samples = 0;  ///< films and images
-  std::optional<double>
-      relative_error{};        ///< films and images: Film::relative_error, where it is known
+  /// Films and images: Film::relative_error, where it is known.
+  std::optional<double> relative_error{};
   FilmFacts facts{};           ///< films and images: of the film
   PixelCounts pixel_counts{};  ///< images and masks; absent where an older dsbuild made them
 };

@@ -34,8 +34,8 @@ struct KeySpec {
   std::string_view unit;           ///< "m", "degree", "" where there is none
   std::string_view default_value;  ///< TOML; "" where there is none; "(...)": in words
   KeyRange range;                  ///< of integers, numbers and each number of a point
-  std::string_view
-      choices;  ///< TOML literals separated by " | ": allowed beside (choice: instead of) the type
+  /// TOML literals separated by " | ": allowed beside (choice: instead of) the type.
+  std::string_view choices;
   std::string_view only_with;  ///< "camera.set = \"orbit\" | ..." or "engine.error != false":
                                ///< without effect, and so an error, otherwise
   std::string_view help;

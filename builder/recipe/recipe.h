@@ -49,16 +49,16 @@ struct Recipe {
   std::uint64_t seed = 0;
   std::string licence;
   std::vector<std::filesystem::path> models;  ///< sorted by file name, which no two share
-  std::vector<std::filesystem::path>
-      materials;  ///< material files, sorted by name, which no two share
+  /// Material files, sorted by name, which no two share.
+  std::vector<std::filesystem::path> materials;
   std::vector<std::filesystem::path> environments;  ///< folders, sorted by name, which no two share
   NormaliseOptions normalise;
   std::optional<std::filesystem::path> train_classes, test_classes;
   Labels labels;                         ///< of both class files
   std::vector<std::string> class_paths;  ///< of both class files, sorted
   ClassCoverage coverage;
-  std::optional<double>
-      split_test_fraction;  ///< where there are no class files and a split is wanted
+  /// Where there are no class files and a split is wanted.
+  std::optional<double> split_test_fraction;
   Assign assign_materials = Assign::random;
   ChoosePer materials_per = ChoosePer::model;
   Assign assign_environments = Assign::cycle;

@@ -7,10 +7,10 @@
 // 32 to 512 samples a pixel and by a Schedule with as many samples in all, REPEATS times (3) with
 // different seeds, taking turns, so that other work on the machine hits both alike. Errors are
 // those of the developed pictures against one of 4096 samples and another seed, over all pixels or
-// over those that show the model (engine.error_region). The uniform
-// pictures give curves of error over seconds and over samples, log-log between their points; a
-// pair's ratio is what the Schedule took over what the curve has at the Schedule's error. Prints a
-// line a pair and the medians, as text.
+// over those that show the model (engine.error_region). The uniform pictures give curves of error
+// over seconds and over samples, log-log between their points; a pair's ratio is what the Schedule
+// took over what the curve has at the Schedule's error. Prints a line a pair and the medians, as
+// text.
 #include "tracer/base/error.h"
 #include "tracer/render/develop.h"
 #include "tracer/render/images.h"

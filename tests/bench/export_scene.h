@@ -11,8 +11,7 @@ namespace ds {
 /// - `model.ply`: the object of k_model_object_id, binary little endian, with normals;
 /// - `object-N.ply`: every object, in the scene's order;
 /// - `object-N.INPUT.f32`: for each textured input of object N's material the texture's value at
-/// every vertex, three
-///   float32 each;
+///   every vertex, three float32 each;
 /// - `image-N.f32`: pixels of the images that lights use, float32 r g b, row 0 at the top;
 /// - `scene.json`: camera, engine settings, materials, objects and lights, numbers as in
 /// scene/scene.h.

@@ -12,11 +12,11 @@ namespace ds {
 /// What a scene calls for; the program contains this and nothing else. Numbers are the positions in
 /// these lists.
 struct Features {
-  std::vector<std::string>
-      materials;  ///< kernel prefixes, in the order of lists.h; mix is not among them
+  /// Kernel prefixes, in the order of lists.h; mix is not among them.
+  std::vector<std::string> materials;
   std::vector<std::string> textures;  ///< kernel prefixes
-  std::vector<std::string>
-      lights;  ///< "point", "spot", "mesh", "constant_infinite", "infinite", "sun"
+  /// "point", "spot", "mesh", "constant_infinite", "infinite", "sun".
+  std::vector<std::string> lights;
   std::vector<std::string> escape_lights;  ///< those of `lights` that lie beyond the scene
   bool mix = false;
   bool lens = false;

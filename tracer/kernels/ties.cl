@@ -5,12 +5,10 @@
 // all are the host's (device/ties.cc); other triangles are not concerned, and ask for nothing.
 //
 // - A ray that meets a covered triangle goes on through what rounding cannot tell from it, and
-// meets
-//   the triangle of least rank there (top_hit).
+//   meets the triangle of least rank there (top_hit).
 // - A path that leaves a surface through it, or back from one that it reached in this way, meets
-// the
-//   next one below or above at once, at the point where it is (next_layer): light gets through a
-//   glass body's foot to the floor, and back.
+//   the next one below or above at once, at the point where it is (next_layer): light gets through
+//   a glass body's foot to the floor, and back.
 //
 // Both ask for the least or greatest (rank, id) of a set that ray and scene define, so the answer
 // does not depend on the tree.

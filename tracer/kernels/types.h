@@ -11,9 +11,9 @@ typedef struct {
   uint first_escape_light;  ///< lights from here on are met by paths that leave the scene
   uint light_table;  ///< offset in tables: light_count cumulative selection probabilities, the last
                      ///< is 1
-  uint
-      light_rounds;  ///< candidates for a vertex' shadow ray: light_count, one of each light, whose
-                     ///< selection probabilities are then 1 or 0; or 1, of a light chosen by these
+  /// Candidates for a vertex' shadow ray: light_count, one of each light, whose selection
+  /// probabilities are then 1 or 0; or 1, of a light chosen by these.
+  uint light_rounds;
   uint material_words;            ///< words a row of materials takes
   float tie_low[3], tie_high[3];  ///< where surfaces may tie (ties.cl); low above high: nowhere
 } SceneData;
@@ -30,8 +30,8 @@ typedef struct {
   float forward[3];      ///< unit, world
   float lens_right[3];   ///< unit right times lens radius, metres
   float lens_up[3];
-  float
-      start_lens_right[3];  ///< the lens as rays' starts show it; at start_depth 0 the lens itself
+  /// The lens as rays' starts show it; at start_depth 0 the lens itself.
+  float start_lens_right[3];
   float start_lens_up[3];
   float focus_distance;  ///< along forward, metres
   uint width, height;

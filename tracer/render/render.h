@@ -98,9 +98,9 @@ struct TraceProgress {
 /// How the tracer runs on one device; none of it may change a bit of a strict picture (tests hold
 /// it to that).
 struct TracerOptions {
-  std::string
-      device;     ///< "" = first CPU device, else first of any; a number or part of a name selects
-  int lanes = 0;  ///< N: 0 = see default_lanes; 1, 4, 8, 16
+  /// "" = first CPU device, else first of any; a number or part of a name selects.
+  std::string device;
+  int lanes = 0;            ///< N: 0 = see default_lanes; 1, 4, 8, 16
   int work_group_size = 0;  ///< 0 = 1 on CPUs, 64 on GPUs
   int item_pixels = 0;      ///< pixels a work-item takes; 0 = up to 128 on CPUs, one a lane on GPUs
   bool full_program = false;  ///< compile every effect in, used or not

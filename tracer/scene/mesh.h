@@ -53,17 +53,17 @@ struct MeshReport {
   std::uint64_t n_gons = 0;       ///< faces of more than three corners
   std::uint64_t short_faces = 0;  ///< faces of fewer than three corners, dropped
   std::uint64_t triangles = 0;    ///< after triangulation (corners - 2 each), before removal
-  std::uint64_t out_of_range =
-      0;                         ///< faces removed: an index below 0 or not below the vertex count
+  /// Faces removed: an index below 0 or not below the vertex count.
+  std::uint64_t out_of_range = 0;
   std::uint64_t non_finite = 0;  ///< vertices with a NaN, infinite or too far coordinate, removed
                                  ///< with all their faces
-  std::uint64_t bad_attributes =
-      0;  ///< kept vertices whose normal, uv or colour is not finite; that is set to 0
+  /// Kept vertices whose normal, uv or colour is not finite; that is set to 0.
+  std::uint64_t bad_attributes = 0;
   std::uint64_t zero_area = 0;        ///< triangles removed: no area
   std::uint64_t duplicate_faces = 0;  ///< triangles removed: the same three corner positions as an
                                       ///< earlier one, whatever the order
-  std::uint64_t unreferenced =
-      0;                      ///< vertices no kept triangle uses, removed (non-finite included)
+  /// Vertices no kept triangle uses, removed (non-finite included).
+  std::uint64_t unreferenced = 0;
   std::uint64_t flipped = 0;  ///< kept triangles of closed surfaces turned to face outwards (see
                               ///< Winding)
   std::uint64_t against = 0;  ///< kept triangles of open surfaces wound against the majority of

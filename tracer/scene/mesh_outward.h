@@ -12,8 +12,8 @@ namespace ds {
 /// What was found of triangles that run the wrong way round.
 struct WindingReport {
   std::uint64_t turned = 0;  ///< of closed surfaces, turned round
-  std::uint64_t against =
-      0;  ///< of open surfaces, against the majority of theirs; left as they are
+  /// Of open surfaces, against the majority of theirs; left as they are.
+  std::uint64_t against = 0;
 };
 
 /// Turns the triangles of closed surfaces so that they face outwards. A surface is what edges of

@@ -28,8 +28,8 @@ enum class ImageChannel { rgb, red, green, blue, alpha, mean, colored_mean };
 /// An image file and how it is read. Pixels are loaded by tracer/render; row 0 is the top.
 struct Image {
   std::filesystem::path file;
-  float gamma =
-      2.2f;  ///< linear = stored^gamma; 1 for HDR files (the reader refuses another value there)
+  /// linear = stored^gamma; 1 for HDR files (the reader refuses another value there).
+  float gamma = 2.2f;
   float gain = 1.0f;
   ImageWrap wrap = ImageWrap::repeat;
   ImageFilter filter = ImageFilter::linear;
@@ -85,8 +85,8 @@ struct Light {
   Vec3 color;
   Vec3 position;   ///< point, spot
   Vec3 direction;  ///< spot: unit, the way it shines; sun: unit, towards the sun
-  float cos_total =
-      0;  ///< spot: cosine beyond which there is no light; sun: cosine of the disc's angular radius
+  /// spot: cosine beyond which there is no light; sun: cosine of the disc's angular radius.
+  float cos_total = 0;
   float cos_falloff = 0;  ///< spot: cosine where the falloff starts, > cos_total
   int image = -1;  ///< infinite: lat-long image in Scene::images (sky2 makes one of its own, with
                    ///< an empty file name)
@@ -96,8 +96,8 @@ struct Light {
   /// v = polar / pi. LuxCore has u = azimuth / 2 pi in its light space (measured: u = 0 at +x, 0.25
   /// at +y), which shows a panorama mirrored; the reader puts that mirror in here.
   Mat4 light_to_world;
-  bool upper_hemisphere_only =
-      false;  ///< a hint for sampling: the image's lower half stays visible
+  /// A hint for sampling: the image's lower half stays visible.
+  bool upper_hemisphere_only = false;
 };
 
 struct Object {

@@ -13,8 +13,8 @@ struct SkySettings {
   Vec3d sun_direction{0, 0, 1};  ///< unit, towards the sun; z at least 0
   double turbidity = 2.2;        ///< 1.7 .. 10
   Vec3d ground_albedo{};         ///< 0 .. 1 a band: light the ground throws back into the sky
-  bool ground_enable =
-      false;  ///< below the horizon: the ground's colour, else the sky at the horizon
+  /// Below the horizon: the ground's colour, else the sky at the horizon.
+  bool ground_enable = false;
   bool ground_autoscale = true;  ///< the ground's colour is times the luminance of the zenith
   Vec3d ground_color{0.75, 0.75, 0.75};
 };
