@@ -3,10 +3,14 @@
 
 #include "builder/build/text_form.h"
 #include "tracer/base/canonical.h"
+#include "tracer/base/hex_text.h"
 #include "tracer/device/program_text.h"
 #include "tracer/render/engine_text.h"
 #include "tracer/scene/sdl.h"
 
+#include <fmt/format.h>
+
+#include <array>
 #include <deque>
 #include <map>
 #include <optional>
@@ -39,6 +43,19 @@ const Encoding& encoding_of(std::string_view kind) {
   assertion_failed("kind is in k_encodings", __FILE__, __LINE__);
 }
 
+/// In the order of the files of an image.
+std::vector<const char*> kinds_of(const OutputSettings& outputs) {
+  std::vector<const char*> kinds;
+  if (outputs.image) kinds.push_back("image");
+  if (outputs.mask) kinds.push_back("mask");
+  if (outputs.depth) kinds.push_back("depth");
+  return kinds;
+}
+
+std::string_view view_of_digits(const fmt::format_int& number) {
+  return {number.data(), number.size()};
+}
+
 const char* name_of(Centring centre) {
   return centre == Centring::none ? "none" : centre == Centring::mass ? "mass" : "box";
 }
@@ -64,9 +81,8 @@ Mesh stand_in() {
 /// What is done to the film and which files there are, for `explain`.
 std::string canonical_files(const OutputSettings& outputs, const ToneMap& tone_map) {
   CanonicalText text;
-  if (outputs.image) text.add("image", encoding_of("image").format);
-  if (outputs.mask) text.add("mask", encoding_of("mask").format);
-  if (outputs.depth) text.add("depth", encoding_of("depth").format);
+  for (const char* kind : kinds_of(outputs))
+    text.add(kind, encoding_of(kind).format);
   return text.text() + canonical_tone_map(tone_map);
 }
 
@@ -94,14 +110,18 @@ std::string canonical_model(Hash128 geometry, const NormaliseOptions& options) {
 }
 
 std::string output_path(const std::string& image_id, const std::string& kind) {
-  return "images/" + image_id + encoding_of(kind).ending;
+  constexpr std::string_view k_folder = "images/";
+  const std::string_view ending = encoding_of(kind).ending;
+  std::string path;
+  path.reserve(k_folder.size() + image_id.size() + ending.size());
+  ((path += k_folder) += image_id) += ending;
+  return path;
 }
 
 std::vector<std::string> output_paths(const OutputSettings& outputs, const std::string& image_id) {
   std::vector<std::string> paths;
-  if (outputs.image) paths.push_back(output_path(image_id, "image"));
-  if (outputs.mask) paths.push_back(output_path(image_id, "mask"));
-  if (outputs.depth) paths.push_back(output_path(image_id, "depth"));
+  for (const char* kind : kinds_of(outputs))
+    paths.push_back(output_path(image_id, kind));
   return paths;
 }
 
@@ -214,19 +234,21 @@ class KeyMaker::State {
   const Recipe& recipe_;
   Inputs& inputs_;
   TextSet& texts_;
+  std::vector<const char*> output_kinds_;  ///< of output files
   Hash128 geometry_program_;
   Shared<std::filesystem::path> model_;  ///< the last image's: a model's images follow each other
   std::optional<Hash128> model_part_;
   std::unordered_map<const void*, Environment> environments_;
   std::map<std::tuple<const void*, const void*, bool>, Kind> kinds_;
   std::deque<std::pair<Features, std::string>> programs_;
-  TextForm five_, film_sums_, mask_, depth_;
+  TextForm five_, film_sums_, mask_, depth_, files_;
 };
 
 KeyMaker::State::State(const Recipe& recipe, Inputs& inputs, TextSet& texts)
     : recipe_(recipe),
       inputs_(inputs),
       texts_(texts),
+      output_kinds_(kinds_of(recipe.outputs)),
       geometry_program_(hash_text(strip_comments(geometry_program_text()))),
       five_(form_of_parts({})),
       mask_(output_form("mask", "")),
@@ -234,6 +256,10 @@ KeyMaker::State::State(const Recipe& recipe, Inputs& inputs, TextSet& texts)
   CanonicalText head;
   head.add("kind", "film_sums");
   film_sums_ = form_of_parts(head);
+  CanonicalText files;
+  for (const char* kind : output_kinds_)
+    files.add(kind, "");
+  files_ = TextForm(files.text(), output_kinds_);
 }
 
 Hash128 KeyMaker::State::model_part(const ImageSpec& image) {
@@ -314,16 +340,20 @@ Kind& KeyMaker::State::kind_of(const ImageSpec& image) {
 
 void KeyMaker::State::add_outputs(ImageKeys& keys, Environment& environment,
                                   const std::string& id) {
-  CanonicalText files;
-  const auto add = [&](const char* kind, TextForm& form, Hash128 traced) {
-    const Hash128 key = form.hash({traced.hex()});
-    files.add(kind, key.hex());
-    keys.outputs.push_back({kind, output_path(id, kind), key});
-  };
-  if (recipe_.outputs.image) add("image", environment.picture, keys.render);
-  if (recipe_.outputs.mask) add("mask", mask_, keys.geometry);
-  if (recipe_.outputs.depth) add("depth", depth_, keys.geometry);
-  keys.files = hash_text(files.text());
+  const HexText render(keys.render), geometry(keys.geometry);
+  keys.outputs.reserve(output_kinds_.size());
+  std::array<HexText, std::size(k_encodings)> texts;
+  std::array<std::string_view, std::size(k_encodings)> values;
+  for (std::size_t i = 0; i < output_kinds_.size(); ++i) {
+    const std::string_view kind = output_kinds_[i];
+    const bool of_film = kind == "image";
+    TextForm& form = of_film ? environment.picture : kind == "mask" ? mask_ : depth_;
+    const Hash128 key = form.hash({of_film ? render : geometry});
+    texts[i] = HexText(key);
+    values[i] = texts[i];
+    keys.outputs.push_back({output_kinds_[i], output_path(id, output_kinds_[i]), key});
+  }
+  keys.files = files_.hash(std::span(values).first(output_kinds_.size()));
 }
 
 ImageKeys KeyMaker::State::keys(const ImageSpec& image) {
@@ -335,12 +365,13 @@ ImageKeys KeyMaker::State::keys(const ImageSpec& image) {
                 kind.material_part,
                 environment.part,
                 view.part,
-                kind.engine.hash({fmt::format("{}", image.engine.seed)}),
+                kind.engine.hash({view_of_digits(fmt::format_int(image.engine.seed))}),
                 environment.files_part};
   const auto& parts = keys.parts;
-  keys.render =
-      five_.hash({parts[0].hex(), parts[1].hex(), parts[2].hex(), parts[3].hex(), parts[4].hex()});
-  keys.geometry = view.geometry.hash({parts[0].hex()});
+  const HexText model(parts[0]);
+  keys.render = five_.hash(
+      {model, HexText(parts[1]), HexText(parts[2]), HexText(parts[3]), HexText(parts[4])});
+  keys.geometry = view.geometry.hash({model});
   add_outputs(keys, environment, image.id);
   return keys;
 }
@@ -349,17 +380,17 @@ Hash128 KeyMaker::State::kept_key(const ImageSpec& image, const ImageKeys& keys)
   Kind& kind = kind_of(image);
   if (!kind.kept)
     kind.kept = TextForm(canonical_kept_engine(kind.settings, *kind.program), {"seed"});
-  const Hash128 engine = kind.kept->hash({fmt::format("{}", image.engine.seed)});
+  const Hash128 engine = kind.kept->hash({view_of_digits(fmt::format_int(image.engine.seed))});
   const auto& parts = keys.parts;
-  return film_sums_.hash(
-      {parts[0].hex(), parts[1].hex(), parts[2].hex(), parts[3].hex(), engine.hex()});
+  return film_sums_.hash({HexText(parts[0]), HexText(parts[1]), HexText(parts[2]),
+                          HexText(parts[3]), HexText(engine)});
 }
 
 /// The other texts were added when the first image of their kind was met.
 void KeyMaker::State::add_texts(const ImageSpec& image) {
   texts_.add(canonical_model(inputs_.model_geometry(image.model_file), recipe_.normalise));
   texts_.add(canonical_camera(image.camera));
-  texts_.add(kind_of(image).engine.fill({fmt::format("{}", image.engine.seed)}));
+  texts_.add(kind_of(image).engine.fill({view_of_digits(fmt::format_int(image.engine.seed))}));
 }
 
 KeyMaker::KeyMaker(const Recipe& recipe, Inputs& inputs, TextSet& texts)

@@ -3,6 +3,7 @@
 
 #include "builder/build/dataset_manifest.h"
 #include "tracer/base/error.h"
+#include "tracer/base/hash_stream.h"
 
 #include <algorithm>
 #include <array>
@@ -44,25 +45,20 @@ DatasetRecord description(const Recipe& recipe, const Plan& plan) {
   return record;
 }
 
-Hash128 labels_of(DatasetRecord record, const Plan& plan) {
-  record.dsbuild_version.clear();
-  std::string text = to_json(record);
-  const auto add = [&](const std::string& word) {
-    text += word;
-    text += '\0';
-  };
-  for (const PlannedImage& image : plan.images) {
-    add(image.spec.id);
-    for (const Label& label : k_labels)
-      add(*(image.spec.*label.wanted));
-  }
-  return hash_text(text);
+void add_word(HashStream& hash, const std::string& word) {
+  hash.add({word.c_str(), word.size() + 1});  // its end is the mark between it and the next
 }
 
-void add_hash(std::string& text, Hash128 hash) {
-  for (const std::uint64_t word : {hash.high, hash.low})
-    for (int shift = 0; shift < 64; shift += 8)
-      text += static_cast<char>((word >> shift) & 0xff);
+Hash128 labels_of(DatasetRecord record, const Plan& plan) {
+  record.dsbuild_version.clear();
+  HashStream hash;
+  hash.add(to_json(record));
+  for (const PlannedImage& image : plan.images) {
+    add_word(hash, image.spec.id);
+    for (const Label& label : k_labels)
+      add_word(hash, *(image.spec.*label.wanted));
+  }
+  return hash.hash();
 }
 
 /// Empty where the file stands as it was written.
@@ -218,33 +214,32 @@ ManifestSources manifest_sources(const Recipe& recipe, const Plan& plan,
   ManifestSources sources;
   sources.labels = labels_of(description(recipe, plan), plan);
   sources.program = hash_text(program_version());
-  std::string text;
-  add_hash(text, sources.labels);
+  HashStream listing;
+  listing.add(sources.labels);
   for (const PlannedImage* image : listed) {
-    text += image->spec.id;
-    text += '\0';
-    add_hash(text, image->keys.render);
+    add_word(listing, image->spec.id);
+    listing.add(image->keys.render);
     for (const OutputFile& output : image->keys.outputs) {
-      add_hash(text, output.key);
-      if (const PlacedFiles::Row* file = placed.find(output.path)) add_hash(text, file->object);
+      listing.add(output.key);
+      if (const PlacedFiles::Row* file = placed.find(output.path)) listing.add(file->object);
     }
   }
-  sources.listing = hash_text(text);
+  sources.listing = listing.hash();
   return sources;
 }
 
 Hash128 what_is_made(const Recipe& recipe, const Plan& plan) {
-  std::string text;
+  HashStream hash;
   try {
-    add_hash(text, labels_of(description(recipe, plan), plan));
+    hash.add(labels_of(description(recipe, plan), plan));
   } catch (const Error& error) {
-    text += error.what();
+    hash.add(error.what());
   }
   for (const PlannedImage& image : plan.images) {
-    add_hash(text, image.keys.render);
-    add_hash(text, image.keys.files);
+    hash.add(image.keys.render);
+    hash.add(image.keys.files);
   }
-  return hash_text(text);
+  return hash.hash();
 }
 
 bool manifest_stands(const Dataset& dataset, const ManifestSources& sources,

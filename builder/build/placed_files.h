@@ -2,6 +2,7 @@
 #pragma once
 
 #include "builder/build/dataset.h"
+#include "builder/build/hash_index.h"
 #include "builder/build/plan.h"
 #include "manifests/manifest.h"
 
@@ -47,10 +48,13 @@ class PlacedFiles {
   void remember_stamps();
 
  private:
+  std::optional<std::size_t> find_row(std::string_view path) const;
+
   Dataset& dataset_;
   Stamps stamps_;
-  int folder_;             ///< descriptor; -1 where there is no folder
-  std::vector<Row> rows_;  ///< by path
+  int folder_;  ///< descriptor; -1 where there is no folder
+  std::vector<Row> rows_;
+  HashIndex by_path_;
   std::vector<PlacedFile> restamped_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/plan.h"
 
+#include "builder/build/hash_index.h"
 #include "builder/build/limits.h"
 #include "builder/build/manifest_state.h"
 #include "builder/build/placed_files.h"
@@ -23,17 +24,18 @@ class Planner {
         force_(force),
         placed_(dataset, stamps),
         rejected_(database_.pictures_with_rejected()) {
+    known_.reserve(image_count(dataset.recipe));
     database_.visit_images(dataset.row.id, [&](std::string_view id, const PartHashes& parts) {
       known_.push_back({hash_text(id), parts, false});
     });
-    std::sort(known_.begin(), known_.end(),
-              [](const Known& a, const Known& b) { return a.id < b.id; });
+    by_id_ = HashIndex(known_.size(), [&](std::size_t i) { return known_[i].id; });
     std::sort(rejected_.begin(), rejected_.end());
   }
 
-  void plan(PlannedImage& image);
-  /// Notes that the recipe has such an image.
-  void want(const std::string& id);
+  /// `known`: what `want` gave.
+  void plan(PlannedImage& image, const PartHashes* known);
+  /// Notes that the recipe has such an image, and gives what the database has of it.
+  const PartHashes* want(const std::string& id);
   /// Whether the database knows images that nobody wanted.
   bool forgets() const;
   PlacedFiles& placed() { return placed_; }
@@ -45,7 +47,6 @@ class Planner {
     PartHashes parts;
     bool wanted = false;
   };
-  Known* find_known(const std::string& id);
   bool in_store(Hash128 key);
   void plan_files(PlannedImage& image, bool changed);
   void find_kept(PlannedImage& image);
@@ -57,21 +58,17 @@ class Planner {
   KeyMaker& keys_;
   TextSet& texts_;
   bool force_;
-  std::vector<Known> known_;  ///< by id
+  std::vector<Known> known_;
+  HashIndex by_id_;
   PlacedFiles placed_;
   std::vector<Hash128> rejected_;  ///< ascending
 };
 
-Planner::Known* Planner::find_known(const std::string& id) {
-  const Hash128 hash = hash_text(id);
-  const auto found =
-      std::lower_bound(known_.begin(), known_.end(), hash,
-                       [](const Known& known, Hash128 key) { return known.id < key; });
-  return found != known_.end() && found->id == hash ? &*found : nullptr;
-}
-
-void Planner::want(const std::string& id) {
-  if (Known* known = find_known(id)) known->wanted = true;
+const PartHashes* Planner::want(const std::string& id) {
+  const auto row = by_id_.find(hash_text(id), [&](std::size_t i) { return known_[i].id; });
+  if (!row) return nullptr;
+  known_[*row].wanted = true;
+  return &known_[*row].parts;
 }
 
 bool Planner::forgets() const {
@@ -141,17 +138,16 @@ void Planner::check_known_picture(PlannedImage& image) {
   }
 }
 
-void Planner::plan(PlannedImage& image) {
+void Planner::plan(PlannedImage& image, const PartHashes* known) {
   check_known_picture(image);
   if (image.elsewhere) return;
-  const Known* known = find_known(image.spec.id);
-  const bool changed = known != nullptr && known->parts != image.keys.parts;
+  const bool changed = known != nullptr && *known != image.keys.parts;
   const bool as_known = known != nullptr && !changed;
   if (as_known && !force_ && placed_.all_in_place(image)) return;
   keys_.add_texts(image.spec);
   if (force_) image.reasons.emplace_back("forced");
   if (known == nullptr) image.reasons.emplace_back("new");
-  if (changed) add_changes(image, known->parts);
+  if (changed) add_changes(image, *known);
   plan_files(image, !as_known);
   const auto in_place = [](const PlannedFile& file) { return file.state == FileState::in_place; };
   if (std::all_of(image.files.begin(), image.files.end(), in_place)) {
@@ -190,10 +186,11 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
   KeyMaker keys(dataset.recipe, inputs, plan.texts);
   Planner planner(dataset, keys, plan.texts, force, inputs.stamps());
   plan.images.reserve(image_count(dataset.recipe));
+  Shared<std::filesystem::path> model;  // of the image before: a model's images follow each other
   expand(dataset.recipe, [&](ImageSpec&& spec) {
     PlannedImage image;
     image.elsewhere = !shard.holds(spec.id);
-    planner.want(spec.id);
+    const PartHashes* known = planner.want(spec.id);
     image.spec = std::move(spec);
     try {
       if (dataset.recipe.camera_fit)
@@ -204,9 +201,13 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
             tone_map_of(dataset.recipe, inputs.environment(image.spec.environment_folder));
       image.keys = keys.keys(image.spec);
       check_names(image.keys.outputs);
-      if (const MendedDamage& damage = inputs.model_damage(image.spec.model_file); !damage.empty())
-        plan.mended.try_emplace(image.spec.model_name, image.spec.model_file, damage);
-      planner.plan(image);
+      if (!model.is_same(image.spec.model_file)) {
+        const MendedDamage& damage = inputs.model_damage(image.spec.model_file);
+        if (!damage.empty())
+          plan.mended.try_emplace(image.spec.model_name, image.spec.model_file, damage);
+        model = image.spec.model_file;
+      }
+      planner.plan(image, known);
     } catch (const DamagedDatabase&) {
       throw;
     } catch (const Error& error) {

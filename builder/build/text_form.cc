@@ -23,7 +23,7 @@ TextForm::TextForm(std::string_view text, std::span<const char* const> names) {
   pieces_.emplace_back(text);
 }
 
-std::string_view TextForm::fill(std::initializer_list<std::string_view> values) {
+std::string_view TextForm::fill(std::span<const std::string_view> values) {
   DS_ASSERT(values.size() + 1 == pieces_.size());
   filled_.clear();
   auto piece = pieces_.begin();

@@ -24,7 +24,11 @@ class TextForm {
 
   /// The text with these values, one for each name. Valid until the next call; values must be as
   /// CanonicalText writes them.
-  std::string_view fill(std::initializer_list<std::string_view> values);
+  std::string_view fill(std::span<const std::string_view> values);
+  std::string_view fill(std::initializer_list<std::string_view> values) {
+    return fill(std::span(values.begin(), values.size()));
+  }
+  Hash128 hash(std::span<const std::string_view> values) { return hash_text(fill(values)); }
   Hash128 hash(std::initializer_list<std::string_view> values) { return hash_text(fill(values)); }
 
  private:

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <charconv>
 #include <set>
+#include <span>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -23,9 +25,13 @@ constexpr std::string_view k_for_image = "image";
 /// is not ("a", "bc").
 std::uint64_t seeded_hash(std::uint64_t seed, std::string_view purpose,
                           std::initializer_list<std::string_view> words) {
-  std::string text = fmt::format("{}\n{}", seed, purpose);
-  for (const std::string_view word : words)
-    text += fmt::format("\n{} {}", word.size(), word);
+  std::string text = fmt::format_int(seed).str();
+  (text += '\n') += purpose;
+  for (const std::string_view word : words) {
+    const fmt::format_int size(word.size());
+    (text += '\n').append(size.data(), size.size());
+    (text += ' ') += word;
+  }
   return hash64_text(text);
 }
 
@@ -43,22 +49,11 @@ struct Axis {
   ChoosePer per;
 };
 
-std::size_t highest_hash(const Recipe& recipe, const Axis& axis, std::string_view model,
-                         std::string_view view) {
-  std::size_t best = 0;
-  std::uint64_t highest = 0;
-  for (std::size_t i = 0; i < axis.candidates.size(); ++i) {
-    const std::string name = axis.name(axis.candidates[i]);
-    const std::uint64_t hash = axis.per == ChoosePer::model
-                                   ? seeded_hash(recipe.seed, axis.purpose, {model, name})
-                                   : seeded_hash(recipe.seed, axis.purpose, {model, view, name});
-    if (i == 0 || hash > highest) {
-      best = i;
-      highest = hash;
-    }
-  }
-  return best;
-}
+/// What an axis gives an image: the file and its name.
+struct Asset {
+  Shared<fs::path> path;
+  Shared<std::string> name;
+};
 
 std::uint64_t view_number(std::string_view name) {
   std::uint64_t number = 0;
@@ -67,22 +62,67 @@ std::uint64_t view_number(std::string_view name) {
   return number;
 }
 
-/// Indices of the candidates that view number `view` of the model is made with.
-std::vector<std::size_t> assigned(const Recipe& recipe, const Axis& axis, std::string_view model,
-                                  std::size_t view) {
-  const std::size_t count = axis.candidates.size();
-  std::vector<std::size_t> indices;
-  if (axis.assign == Assign::all) {
-    for (std::size_t i = 0; i < count; ++i)
-      indices.push_back(i);
-  } else if (count > 0 && axis.assign == Assign::cycle) {
-    const std::uint64_t start = seeded_hash(recipe.seed, axis.purpose, {model}) % count;
-    // The view's own number, not its place in the list: camera.views leaves the others as they are.
-    indices.push_back((start + view_number(recipe.view_names[view])) % count);
-  } else if (count > 0) {
-    indices.push_back(highest_hash(recipe, axis, model, recipe.view_names[view]));
+/// What one axis gives each view of a model: what is of the model is asked once for all its views.
+class Choice {
+ public:
+  Choice(const Recipe& recipe, const Axis& axis) : recipe_(recipe), axis_(axis) {
+    for (const fs::path& path : axis.candidates)
+      assets_.push_back({path, axis.name(path)});
+    if (axis.assign != Assign::cycle) return;
+    for (const std::string& view : recipe.view_names)
+      view_numbers_.push_back(view_number(view));
   }
-  return indices;
+
+  void start_model(const std::string& model);
+  /// The assets that view number `view` of the model is made with.
+  std::span<const Asset> of_view(std::size_t view) const;
+
+ private:
+  std::size_t highest_hash(std::string_view view) const;
+
+  const Recipe& recipe_;
+  Axis axis_;
+  std::vector<Asset> assets_;
+  std::vector<std::uint64_t> view_numbers_;  ///< where they cycle
+  std::string model_;
+  std::uint64_t start_ = 0;   ///< of the cycle
+  std::size_t of_model_ = 0;  ///< chosen for all views
+};
+
+std::size_t Choice::highest_hash(std::string_view view) const {
+  std::size_t best = 0;
+  std::uint64_t highest = 0;
+  for (std::size_t i = 0; i < assets_.size(); ++i) {
+    const std::string_view name = *assets_[i].name;
+    const std::uint64_t hash = axis_.per == ChoosePer::model
+                                   ? seeded_hash(recipe_.seed, axis_.purpose, {model_, name})
+                                   : seeded_hash(recipe_.seed, axis_.purpose, {model_, view, name});
+    if (i == 0 || hash > highest) {
+      best = i;
+      highest = hash;
+    }
+  }
+  return best;
+}
+
+void Choice::start_model(const std::string& model) {
+  model_ = model;
+  if (axis_.assign == Assign::cycle)
+    start_ = seeded_hash(recipe_.seed, axis_.purpose, {model_});
+  else if (axis_.assign == Assign::random && axis_.per == ChoosePer::model)
+    of_model_ = highest_hash({});
+}
+
+std::span<const Asset> Choice::of_view(std::size_t view) const {
+  if (axis_.assign == Assign::all || assets_.empty()) return assets_;
+  if (axis_.assign == Assign::cycle) {
+    // The view's own number, not its place in the list: camera.views leaves the others as they are.
+    const std::size_t count = assets_.size();
+    return std::span(assets_).subspan((start_ % count + view_numbers_[view]) % count, 1);
+  }
+  const std::size_t chosen =
+      axis_.per == ChoosePer::model ? of_model_ : highest_hash(recipe_.view_names[view]);
+  return std::span(assets_).subspan(chosen, 1);
 }
 
 ModelLabel label_of(const Recipe& recipe, const std::string& model) {
@@ -91,19 +131,6 @@ ModelLabel label_of(const Recipe& recipe, const std::string& model) {
   const double share =
       static_cast<double>(top_53_bits(seeded_hash(recipe.seed, k_for_split, {model}))) * 0x1p-53;
   return {"", share < *recipe.split_test_fraction ? "test" : "train"};
-}
-
-/// What an axis gives an image: the file and its name.
-struct Asset {
-  Shared<fs::path> path;
-  Shared<std::string> name;
-};
-
-std::vector<Asset> assets_of(const Axis& axis) {
-  std::vector<Asset> assets;
-  for (const fs::path& path : axis.candidates)
-    assets.push_back({path, axis.name(path)});
-  return assets;
 }
 
 /// What stands behind model and view in an id.
@@ -137,34 +164,35 @@ void expand(const Recipe& recipe, const std::function<void(ImageSpec&&)>& visit)
                        recipe.materials_per};
   const Axis environments{k_for_environment, recipe.environments, environment_name,
                           recipe.assign_environments, recipe.environments_per};
-  const std::vector<Asset> material_assets = assets_of(materials);
-  const std::vector<Asset> environment_assets = assets_of(environments);
+  Choice material_choice(recipe, materials), environment_choice(recipe, environments);
   const std::vector<Shared<std::string>> views(recipe.view_names.begin(), recipe.view_names.end());
-  std::vector<fs::path> models = recipe.models;
-  std::stable_sort(models.begin(), models.end(), [](const fs::path& a, const fs::path& b) {
-    return a.filename() < b.filename();
-  });
+  std::vector<std::pair<std::string, const fs::path*>> models;
+  for (const fs::path& model : recipe.models)
+    models.emplace_back(model.filename().string(), &model);
+  std::stable_sort(models.begin(), models.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   ImageSpec image;
-  for (const fs::path& model : models) {
-    const std::string name = model.filename().string();
+  image.engine = recipe.engine;
+  for (const auto& [name, file] : models) {
     const ModelLabel label = label_of(recipe, name);
-    image.model_file = model;
+    image.model_file = *file;
     image.model_name = name;
     image.class_path = label.class_path;
     image.split = label.split;
+    material_choice.start_model(name);
+    environment_choice.start_model(name);
     for (std::size_t view = 0; view < recipe.cameras.size(); ++view) {
       image.view = views[view];
       image.camera = recipe.cameras[view];
-      const auto places = assigned(recipe, environments, name, view);
-      for (const std::size_t material : assigned(recipe, materials, name, view)) {
-        image.material_file = material_assets[material].path;
-        image.material_name = material_assets[material].name;
-        for (const std::size_t environment : places) {
-          image.environment_folder = environment_assets[environment].path;
-          image.environment_name = environment_assets[environment].name;
-          image.id = fmt::format("{}/{}{}", name, *image.view,
-                                 suffix(recipe, image.material_name, image.environment_name));
-          image.engine = recipe.engine;
+      const std::span<const Asset> places = environment_choice.of_view(view);
+      for (const Asset& material : material_choice.of_view(view)) {
+        image.material_file = material.path;
+        image.material_name = material.name;
+        for (const Asset& place : places) {
+          image.environment_folder = place.path;
+          image.environment_name = place.name;
+          image.id = name + "/" + *image.view;
+          image.id += suffix(recipe, image.material_name, image.environment_name);
           image.engine.seed = top_53_bits(seeded_hash(recipe.seed, k_for_image, {image.id}));
           visit(ImageSpec(image));
         }

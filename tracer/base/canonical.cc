@@ -3,25 +3,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace ds {
 namespace {
 
-std::string escape_line_breaks(std::string_view value) {
-  std::string out;
-  for (const char c : value) {
-    if (c == '\n') {
-      out += "\\n";
-    } else if (c == '\r') {
-      out += "\\r";
-    } else if (c == '\\') {
-      out += "\\\\";
-    } else {
-      out += c;
-    }
+void append_escaped(std::string& text, std::string_view value) {
+  const auto is_special = [](char c) { return c == '\n' || c == '\r' || c == '\\'; };
+  for (;;) {
+    const auto special = std::find_if(value.begin(), value.end(), is_special);
+    text.append(value.begin(), special);
+    if (special == value.end()) return;
+    text += *special == '\n' ? "\\n" : *special == '\r' ? "\\r" : "\\\\";
+    value = {special + 1, value.end()};
   }
-  return out;
 }
 
 template <typename T>
@@ -49,7 +45,7 @@ std::string hex_float(float value) {
 void CanonicalText::add(std::string_view name, std::string_view value) {
   text_ += name;
   text_ += " = ";
-  text_ += escape_line_breaks(value);
+  append_escaped(text_, value);
   text_ += '\n';
 }
 

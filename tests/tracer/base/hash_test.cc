@@ -3,6 +3,8 @@
 
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
+#include "tracer/base/hash_stream.h"
+#include "tracer/base/hex_text.h"
 
 #include <gtest/gtest.h>
 
@@ -27,6 +29,45 @@ TEST(HashTest, hex_round_trip_and_refusals) {
   std::string upper = hash.hex();
   upper[3] = 'G';
   EXPECT_FALSE(Hash128::from_hex(upper));
+}
+
+// The digits of a number written by the standard library, high word first.
+TEST(HashTest, hex_is_that_of_the_two_words) {
+  for (const Hash128 hash : {Hash128{0, 0}, Hash128{0x0123456789abcdefU, 0xfedcba9876543210U},
+                             Hash128{~std::uint64_t{0}, 1}}) {
+    const std::string wanted = fmt::format("{:016x}{:016x}", hash.high, hash.low);
+    EXPECT_EQ(hash.hex(), wanted);
+    EXPECT_EQ(std::string_view(HexText(hash)), wanted);
+    EXPECT_EQ(Hash128::from_hex(wanted), hash);
+  }
+  EXPECT_EQ(std::string_view(HexText()), std::string(32, '0'));
+}
+
+TEST(HashTest, every_byte_but_the_sixteen_digits_is_refused_anywhere) {
+  const std::string digits = "0123456789abcdef";
+  for (int byte = 0; byte < 256; ++byte)
+    for (const std::size_t place : {std::size_t{0}, std::size_t{15}, std::size_t{31}}) {
+      std::string text(32, '7');
+      text[place] = static_cast<char>(byte);
+      EXPECT_EQ(Hash128::from_hex(text).has_value(), digits.find(text[place]) != digits.npos)
+          << byte << " at " << place;
+    }
+}
+
+TEST(HashTest, a_stream_is_the_hash_of_all_its_texts) {
+  std::string all;
+  HashStream stream;
+  EXPECT_EQ(stream.hash(), hash_text(""));
+  for (std::size_t size = 0; size < 2000; size += 37) {
+    const std::string piece(size, static_cast<char>('a' + size % 26));
+    all += piece;
+    stream.add(piece);
+    EXPECT_EQ(stream.hash(), hash_text(all)) << size;
+  }
+  stream.add(Hash128{0x0807060504030201U, 0x100f0e0d0c0b0a09U});
+  for (char byte = 1; byte <= 16; ++byte)
+    all += byte;
+  EXPECT_EQ(stream.hash(), hash_text(all));
 }
 
 TEST(HashTest, file_equals_memory_over_a_block_border) {
