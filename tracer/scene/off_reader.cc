@@ -156,9 +156,9 @@ class OffReader {
         row[found] = cursor_.number() + 0.0;
       if (i == 0 && !keyword_.colours && (found == least + 3 || found == least + 4))
         undeclared = found - least;
-      const bool below_0 =
-          undeclared > 0 && *std::min_element(row.begin() + least, row.begin() + found) < 0;
       const bool fits = keyword_.colours ? found >= least : found == least + undeclared;
+      const bool below_0 =
+          fits && undeclared > 0 && *std::min_element(row.begin() + least, row.begin() + found) < 0;
       if (!fits || below_0 || !may_end())
         cursor_.fail_here("vertex {} must have {} values, found {}", i, least,
                           found < least ? "fewer" : "more");

@@ -107,6 +107,11 @@ TEST(OffReader, NamesTheLineOfWhatIsBroken) {
               HasSubstr("m:8: face 1 has more than 3 corners and a colour"));
 }
 
+TEST(OffReader, RefusesAVertexThatIsShorterThanTheColouredOnesBefore) {
+  EXPECT_THAT(error_of("OFF\n3 1 0\n0 0 0 255 0 0 255\n1 255\n0 1 0\n3 0 1 2\n"),
+              HasSubstr("m:4: vertex 1 must have 3 values, found fewer"));
+}
+
 TEST(OffReader, EveryCutIsAnError) {
   // Less the last digit the file would hold other numbers, and be whole; less the line break it is.
   const std::string file = k_tetra_off;
