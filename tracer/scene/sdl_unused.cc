@@ -6,6 +6,11 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace ds {
 namespace {
@@ -188,23 +193,23 @@ void mend_section_names(SdlReader& reader) {
     sections.push_back(section_of(section->kind));
   for (const Elsewhere& elsewhere : k_elsewhere)
     sections.push_back(elsewhere.prefix);
-  std::set<std::string> unknown;
+  std::map<std::string, std::string_view> misspelt;
   for (const Property* property : reader.properties.unused()) {
     const std::string& name = property->name;
-    const std::size_t dot = name.find('.');
-    if (dot == std::string::npos) continue;
-    const std::string prefix = name.substr(0, name.find('.', dot + 1));
+    const std::size_t end = name.find('.', name.find('.') + 1);
+    if (end == std::string::npos) continue;  // nothing is below it: no section, whatever its name
+    const std::string prefix = name.substr(0, end);
     const bool known = std::any_of(sections.begin(), sections.end(),
                                    [&](std::string_view s) { return is_below(name, s); });
-    if (known || unknown.contains(prefix)) continue;
+    if (known || misspelt.contains(prefix)) continue;
     const std::string_view meant = nearest(prefix, sections);
     if (meant.empty()) continue;
-    unknown.insert(prefix);
+    misspelt.emplace(prefix, meant);
     reader.diagnostics.add(property->place, "{} is no section of a scene, did you mean {}?", prefix,
                            meant);
-    reader.properties.rename_prefix(prefix, meant);
-    return mend_section_names(reader);  // what was looked at has moved
   }
+  for (const auto& [prefix, meant] : misspelt)
+    reader.properties.rename_prefix(prefix, meant);
 }
 
 std::string_view meant_property(const SdlSection& section, const SdlTypeRow* row,

@@ -233,6 +233,8 @@ INSTANTIATE_TEST_SUITE_P(
              "m.scn:1: scene.material is no section of a scene, did you mean scene.materials?\n"
              "m.scn:3: scene.materials.a.ks is unknown to a material of type matte; it has kd, "
              "emission"},
+        Case{"scene.text = a\nscene.epsilom = 1\nscene.materials.a.kd = 1",
+             "m.scn:1: scene.text is unknown\nm.scn:2: scene.epsilom is unknown"},
         Case{"scene.materials.a.type = metal2\nscene.materials.a.uroughnes = 0.1\n"
              "scene.materials.a.emision = 1",
              "m.scn:2: scene.materials.a.uroughnes is unknown to a material, did you mean "
