@@ -204,7 +204,8 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
       if (!model.is_same(image.spec.model_file)) {
         const MendedDamage& damage = inputs.model_damage(image.spec.model_file);
         if (!damage.empty())
-          plan.mended.try_emplace(image.spec.model_name, image.spec.model_file, damage);
+          plan.mended.try_emplace(image.spec.model_name,
+                                  MendedModel{image.spec.model_file, damage});
         model = image.spec.model_file;
       }
       planner.plan(image, known);

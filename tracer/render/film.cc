@@ -87,10 +87,12 @@ Film film_of(const FilmSums& sums, const PixelFilter& filter) {
   Film film;
   film.width = sums.width;
   film.height = sums.height;
-  const auto [least, most] = std::minmax_element(sums.tile_spp.begin(), sums.tile_spp.end());
-  DS_ASSERT(*least > 0);
+  const auto range = std::minmax_element(sums.tile_spp.begin(), sums.tile_spp.end());
+  const std::uint32_t least = *range.first;
+  const std::uint32_t most = *range.second;
+  DS_ASSERT(least > 0);
   film.rgb.resize(sums.pixels() * 3);
-  if (*least > 1) film.halves.resize(sums.pixels() * 3);
+  if (least > 1) film.halves.resize(sums.pixels() * 3);
   const auto w = static_cast<std::size_t>(sums.width), h = static_cast<std::size_t>(sums.height);
   constexpr std::size_t band = 16;  // rows at a time
   parallel_ranges((h + band - 1) / band, 1, [&](std::size_t begin, std::size_t end) {
@@ -98,15 +100,15 @@ Film film_of(const FilmSums& sums, const PixelFilter& filter) {
       std::size_t at = y * w * 3;
       for (const PixelEstimate& pixel : filtered(sums, filter, {0, y, w, std::min(y + band, h)})) {
         std::copy(pixel.mean.begin(), pixel.mean.end(), film.rgb.data() + at);
-        if (*least > 1) std::copy(pixel.half.begin(), pixel.half.end(), film.halves.data() + at);
+        if (least > 1) std::copy(pixel.half.begin(), pixel.half.end(), film.halves.data() + at);
         at += 3;
       }
     }
   });
   FilmFacts& facts = film.facts;
   facts.samples = sums.samples();
-  facts.least_spp = *least;
-  facts.most_spp = *most;
+  facts.least_spp = least;
+  facts.most_spp = most;
   facts.nan_samples = count(sums, kernels::k_film_nan);
   facts.infinite_samples = count(sums, kernels::k_film_infinite);
   facts.negative_samples = count(sums, kernels::k_film_negative);

@@ -196,8 +196,9 @@ MendedDamage mended_damage(const MeshReport& report) {
 std::string to_text(const MendedDamage& damage) {
   std::string text;
   for (const auto& [name, count] : damage) {
-    const auto column = std::find_if(k_mesh_report_columns.begin(), k_mesh_report_columns.end(),
-                                     [&](const MeshReportColumn& c) { return name == c.name; });
+    const auto column =
+        std::find_if(k_mesh_report_columns.begin(), k_mesh_report_columns.end(),
+                     [&name = name](const MeshReportColumn& c) { return name == c.name; });
     const bool known = column != k_mesh_report_columns.end() && column->damage != nullptr;
     text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", known ? column->damage : name.c_str(),
                         count);
