@@ -56,6 +56,9 @@ function(ds_library name)
   endif()
 endfunction()
 
+# Builds the tests that trace no pictures: what sanitizers are run with (ci/deep).
+add_custom_target(tests_without_pictures)
+
 # ds_test(NAME SOURCES a_test.cc ... LIBS b ... [LABELS slow render]): one GoogleTest program, one CTest entry a test.
 # DS_SOURCE_DIR holds the project's root, so that tests find assets and ../shared/data.
 function(ds_test name)
@@ -65,6 +68,9 @@ function(ds_test name)
   target_compile_definitions(${name} PRIVATE DS_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   if(DS_PCH)
     target_precompile_headers(${name} REUSE_FROM ds_test_precompiled)
+  endif()
+  if(NOT "render" IN_LIST A_LABELS)
+    add_dependencies(tests_without_pictures ${name})
   endif()
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${A_LABELS}")
 endfunction()
