@@ -5,7 +5,7 @@
 #include "builder/build/store_database.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
-#include "tracer/base/hash.h"
+#include "tracer/base/hash_stream.h"
 #include "tracer/base/log.h"
 
 #include <random>
@@ -103,7 +103,7 @@ bool are_two_files(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (!fs::is_regular_file(a, error) || !fs::is_regular_file(b, error)) return false;
   try {
-    return hash_file(a).xxh128 != hash_file(b).xxh128;
+    return content_hash(a) != content_hash(b);
   } catch (const Error&) {
     return false;
   }

@@ -3,7 +3,7 @@
 
 #include "builder/build/keys.h"
 #include "tracer/base/files.h"
-#include "tracer/base/hash.h"
+#include "tracer/base/hash_stream.h"
 #include "tracer/render/render.h"
 #include "tracer/scene/sdl.h"
 
@@ -45,7 +45,7 @@ KnownModel Inputs::look_at_model(const std::filesystem::path& file) {
   std::optional<Hash128> content;
   if (stamp && stamps_ == Stamps::trust) content = database_.find_content(file, *stamp);
   const bool new_content = !content;
-  if (!content) content = hash_file(file).xxh128;
+  if (!content) content = content_hash(file);
   std::optional<KnownModel> known = database_.find_model(*content, k_host_render_version);
   const bool new_model = !known;
   if (!known) {

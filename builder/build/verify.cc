@@ -3,6 +3,7 @@
 
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
+#include "tracer/base/hash_stream.h"
 #include "tracer/render/develop.h"
 
 #include <algorithm>
@@ -84,7 +85,7 @@ void check_checksums(VerifyResult& result, const fs::path& folder,
       add(k_checksums, "it lists " + path + ", which images.jsonl does not");
     else if (!fs::is_regular_file(folder / path, error))
       result.findings.push_back({Finding::Kind::missing, path, "the file is missing"});
-    else if (hash_file(folder / path).xxh128 != hash)
+    else if (content_hash(folder / path) != hash)
       add(path, "it has another checksum than " + std::string(k_checksums) + " says");
   }
 }
@@ -235,8 +236,7 @@ void verify_against_plan(VerifyResult& result, Dataset& dataset, const Plan& pla
           {Finding::Kind::extra, id, "the manifest names it, the recipe does not"});
   for (const auto& [path, placed] : dataset.database->placed_files(dataset.row.id)) {
     const fs::path file = dataset.folder / path;
-    if (placed.kind == k_manifest_kind && stamp_of(file) &&
-        hash_file(file).xxh128 != placed.object) {
+    if (placed.kind == k_manifest_kind && stamp_of(file) && content_hash(file) != placed.object) {
       result.findings.push_back(
           {Finding::Kind::manifest, path, "it is not the one the last build wrote"});
       return;

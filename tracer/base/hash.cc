@@ -89,15 +89,19 @@ std::string Hash128::hex() const {
 
 std::optional<Hash128> Hash128::from_hex(std::string_view text) {
   if (text.size() != 32) return std::nullopt;
-  std::array<std::uint64_t, 2> words{};
   unsigned all = 0;
-  for (std::size_t i = 0; i < 32; ++i) {
-    const unsigned digit = k_digit_values[static_cast<unsigned char>(text[i])];
-    all |= digit;
-    words[i / 16] = words[i / 16] << 4U | (digit & 15U);
-  }
-  if (all > 15) return std::nullopt;
-  return Hash128{words[0], words[1]};
+  const auto word = [&](const char* digits) {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < 16; ++i) {
+      const unsigned digit = k_digit_values[static_cast<unsigned char>(digits[i])];
+      all |= digit;
+      value = value << 4U | digit;  // of no digit it is not used
+    }
+    return value;
+  };
+  const Hash128 hash{word(text.data()), word(text.data() + 16)};
+  if (all >= k_no_digit) return std::nullopt;
+  return hash;
 }
 
 Hash128 hash_bytes(std::span<const std::byte> bytes) {
@@ -143,22 +147,39 @@ std::string sha256_hex(std::span<const std::byte> bytes) {
   return sha.finish();
 }
 
-FileHashes hash_file(const std::filesystem::path& path) {
+namespace {
+
+/// Calls `visit` with the file's bytes, a block after the other.
+template <typename Visit>
+void visit_blocks(const std::filesystem::path& path, const Visit& visit) {
   const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.c_str(), "rb"));
   if (!file) fail(ErrorKind::io, "{}: cannot be opened for reading", path.string());
+  std::vector<char> block(1 << 16);
+  while (const std::size_t got = std::fread(block.data(), 1, block.size(), file.get()))
+    visit(std::string_view(block.data(), got));
+  if (std::ferror(file.get()) != 0) fail(ErrorKind::io, "{}: cannot be read", path.string());
+}
+
+}  // namespace
+
+FileHashes hash_file(const std::filesystem::path& path) {
   HashStream stream;
   Sha256 sha;
   FileHashes result;
-  std::vector<char> block(1 << 16);
-  while (const std::size_t got = std::fread(block.data(), 1, block.size(), file.get())) {
-    stream.add(std::string_view(block.data(), got));
-    sha.update(std::as_bytes(std::span(block).first(got)));
-    result.size_bytes += got;
-  }
-  if (std::ferror(file.get()) != 0) fail(ErrorKind::io, "{}: cannot be read", path.string());
+  visit_blocks(path, [&](std::string_view block) {
+    stream.add(block);
+    sha.update(bytes_of(block));
+    result.size_bytes += block.size();
+  });
   result.xxh128 = stream.hash();
   result.sha256 = sha.finish();
   return result;
+}
+
+Hash128 content_hash(const std::filesystem::path& path) {
+  HashStream stream;
+  visit_blocks(path, [&](std::string_view block) { stream.add(block); });
+  return stream.hash();
 }
 
 }  // namespace ds

@@ -79,7 +79,9 @@ TEST(HashTest, file_equals_memory_over_a_block_border) {
   EXPECT_EQ(hashes.xxh128, hash_text(text));
   EXPECT_EQ(hashes.sha256, sha256_hex(bytes_of(text)));
   EXPECT_EQ(hashes.size_bytes, text.size());
+  EXPECT_EQ(content_hash(folder.path() / "f"), hash_text(text));
   EXPECT_THROW(hash_file(folder.path() / "none"), Error);
+  EXPECT_THROW(content_hash(folder.path() / "none"), Error);
 }
 
 }  // namespace
