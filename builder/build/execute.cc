@@ -45,6 +45,17 @@ std::vector<const ImageSpec*> one_of_each_kind(const std::deque<const PlannedIma
   return first;
 }
 
+/// Whether a line taken over from the manifest before is one that the next build may leave out
+/// though nothing changed: of an image, or with a file, that the recipe does not have.
+bool is_left_over(const ImageRecord& record, const std::set<std::string_view>& planned,
+                  const OutputSettings& outputs) {
+  if (!planned.contains(record.id)) return true;
+  const std::vector<std::string> wanted = output_paths(outputs, record.id);
+  return std::any_of(record.files.begin(), record.files.end(), [&](const FileRecord& file) {
+    return std::find(wanted.begin(), wanted.end(), file.path) == wanted.end();
+  });
+}
+
 class Execution {
  public:
   Execution(Dataset& dataset, const Plan& plan, Inputs& inputs, const BuildOptions& options,
@@ -70,8 +81,15 @@ class Execution {
   bool make_one(const PlannedImage& image);
   void fail_image(const PlannedImage& image, const std::string& why);
   void collect_failures();
-  bool nothing_to_finish() const;
+  bool is_as_planned() const;
   bool is_in_place(PlacedFiles& placed, const PlannedImage& image);
+  ListedImages look_at_images(PlacedFiles& placed, bool as_planned);
+  void find_capped(const ListedImages& images);
+  bool take_standing_manifest(const ListedImages& images, const ManifestSources& sources,
+                              const PlacedFiles& placed);
+  void write_manifest(const ListedImages& images, ManifestSources sources, PlacedFiles& placed);
+  bool anything_to_do() const;
+  void begin();
   void finish();
   void remove_left_over();
   void log();
@@ -102,9 +120,22 @@ void Execution::fail_image(const PlannedImage& image, const std::string& why) {
 /// With the recipe and overrides that are built now.
 void Execution::enter_dataset() {
   const Claims::Claim claim = dataset_.claims->own_datasets();
-  if (const auto row = dataset_.database->find_dataset(dataset_.row.id))
-    dataset_.row.manifest = row->manifest;
-  dataset_.database->put_dataset(dataset_.row);
+  const auto row = dataset_.database->find_dataset(dataset_.row.id);
+  if (row) dataset_.row.manifest = row->manifest;
+  if (row != dataset_.row) dataset_.database->put_dataset(dataset_.row);
+}
+
+/// Whether files, or what the database has of images, may come to be others.
+bool Execution::anything_to_do() const {
+  return options_.copy || !plan_.to_remove.empty() || plan_.forgets || !plan_.manifest.current() ||
+         std::any_of(plan_.images.begin(), plan_.images.end(),
+                     [](const PlannedImage& image) { return image.stale() || image.record; });
+}
+
+/// Enters the build before it writes any file, so that another one sees where this one is killed.
+void Execution::begin() {
+  if (build_number_ != 0) return;
+  build_number_ = dataset_.database->begin_build(dataset_.row.id, host_name(), ::getpid());
 }
 
 /// Counts the shard's images and those that need nothing, enters failures, and returns what is to
@@ -232,65 +263,112 @@ bool Execution::is_in_place(PlacedFiles& placed, const PlannedImage& image) {
   }
 }
 
-/// Whether the folder is as the plan found it, and the plan found it all in place and listed: then
-/// nothing is looked at twice. Where there is an error target the records are read for the images
-/// that did not reach it. With `copy` files may have been parted from the store, which changes
-/// their stamps.
-bool Execution::nothing_to_finish() const {
+/// Whether this build changed nothing, and nobody else did since it was planned: then what the plan
+/// found in place is not looked at twice. With `copy` files may have been parted from the store,
+/// which changes their stamps.
+bool Execution::is_as_planned() const {
   return result_.built == 0 && !options_.copy && plan_.to_remove.empty() && !plan_.forgets &&
-         plan_.manifest.current() && !dataset_.recipe.engine.target &&
-         std::none_of(plan_.images.begin(), plan_.images.end(), [](const PlannedImage& image) {
-           return image.elsewhere || image.error || image.stale() || image.record;
-         });
+         plan_.manifest.current() && plan_.data_version == dataset_.database->data_version() &&
+         std::none_of(plan_.images.begin(), plan_.images.end(),
+                      [](const PlannedImage& image) { return image.stale() || image.record; });
+}
+
+/// Tells apart the images whose files are in place. `as_planned`: those of other shards only are
+/// looked at.
+ListedImages Execution::look_at_images(PlacedFiles& placed, bool as_planned) {
+  ListedImages images;
+  for (const PlannedImage& image : plan_.images) {
+    const bool known = as_planned && !image.elsewhere;
+    const bool made = !image.error && (known || is_in_place(placed, image));
+    (made ? images.made : images.lacking).push_back(&image);
+  }
+  return images;
+}
+
+/// The pictures of the shard that are less exact than the recipe wants.
+void Execution::find_capped(const ListedImages& images) {
+  if (!dataset_.recipe.engine.target) return;
+  auto capped = dataset_.database->capped_pictures();
+  std::sort(capped.begin(), capped.end());
+  for (const PlannedImage* image : images.made) {
+    if (image->elsewhere) continue;
+    for (const OutputFile& output : image->keys.outputs) {
+      const auto found =
+          std::lower_bound(capped.begin(), capped.end(), std::pair(output.key, -1.0));
+      if (output.kind == "image" && found != capped.end() && found->first == output.key)
+        result_.capped.emplace_back(image->spec.id, found->second);
+    }
+  }
+}
+
+/// Whether the manifest that stands is the one this build would write; then also what it says.
+bool Execution::take_standing_manifest(const ListedImages& images, const ManifestSources& sources,
+                                       const PlacedFiles& placed) {
+  if (result_.built > 0 || !manifest_stands(dataset_, sources, placed)) return false;
+  result_.concerns = read_dataset_manifest(dataset_.folder).concerns;
+  find_capped(images);
+  return true;
 }
 
 void Execution::finish() {
-  if (nothing_to_finish()) {
-    result_.concerns = read_dataset_manifest(dataset_.folder).concerns;
-    return;
+  if (is_as_planned()) {
+    const ListedImages images = look_at_images(*plan_.placed, true);
+    if (take_standing_manifest(
+            images, manifest_sources(dataset_.recipe, plan_, images, *plan_.placed), *plan_.placed))
+      return;
   }
+  begin();
   maker_.remember_stamps();
   // Of builds that end at once, the last to write must have seen what all of them placed.
   const Claims::Claim claim = dataset_.claims->own_datasets();
   if (!cut_short()) remove_left_over();
   PlacedFiles placed(dataset_);
-  std::vector<const PlannedImage*> listed, lacking;
-  for (const PlannedImage& image : plan_.images)
-    (!image.error && is_in_place(placed, image) ? listed : lacking).push_back(&image);
+  const ListedImages images = look_at_images(placed, false);
+  ManifestSources sources = manifest_sources(dataset_.recipe, plan_, images, placed);
+  if (!take_standing_manifest(images, sources, placed)) write_manifest(images, sources, placed);
+}
+
+void Execution::write_manifest(const ListedImages& images, ManifestSources sources,
+                               PlacedFiles& placed) {
   std::vector<ImageRecord> records;
-  for (const PlannedImage* image : listed) {
+  for (const PlannedImage* image : images.made) {
     ImageRecord& record = records.emplace_back(image_record(*image, *dataset_.database));
     count_older_pixels(record, *image, dataset_.folder, *dataset_.database);
-    if (record.film.capped && !image->elsewhere)
-      result_.capped.emplace_back(record.id, record.film.developed_high.value_or(0));
   }
-  const ManifestSources sources = manifest_sources(dataset_.recipe, plan_, listed, placed);
-  if (lacking.empty() && result_.built == 0 && manifest_stands(dataset_, sources, placed)) {
-    result_.concerns = read_dataset_manifest(dataset_.folder).concerns;
-    return;
-  }
+  find_capped(images);
   const std::size_t made = records.size();
-  add_older_records(records, dataset_, lacking, cut_short(), placed);
+  add_older_records(records, dataset_, images.lacking, cut_short(), placed);
   DatasetRecord record = dataset_record(dataset_.recipe, plan_.mended, records);
   if (records.size() > made)
     record.counts.emplace_back("of_an_earlier_build", records.size() - made);
   result_.concerns = record.concerns;
-  write_manifest(dataset_.folder, record, records);
+  ds::write_manifest(dataset_.folder, record, records);
+  std::set<std::string_view> planned;
+  for (const PlannedImage* image : images.lacking)
+    planned.insert(image->spec.id);
+  if (std::any_of(records.begin() + static_cast<std::ptrdiff_t>(made), records.end(),
+                  [&](const ImageRecord& older) {
+                    return is_left_over(older, planned, dataset_.recipe.outputs);
+                  }))
+    sources.listing = {};  // so that it does not stand
   remember_manifest(dataset_, sources);
 }
 
 void Execution::log() {
   result_.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - options_.started).count();
+  Transaction transaction(dataset_.database->connection());
+  begin();
   const char* outcome = result_.stopped ? "stopped" : result_.failures.empty() ? "done" : "failed";
   dataset_.database->update_build({build_number_, "", "", 0, result_.device, outcome,
                                    result_.images, result_.built, result_.reused, result_.failed,
                                    result_.traced_samples, result_.seconds});
+  transaction.commit();
 }
 
 BuildResult Execution::run() {
   enter_dataset();
-  build_number_ = dataset_.database->begin_build(dataset_.row.id, host_name(), ::getpid());
+  if (anything_to_do()) begin();
   clean_up_killed_builds(dataset_, build_number_);
   make_all(sort_images());
   collect_failures();

@@ -2,6 +2,7 @@
 #include "builder/build/manifest_state.h"
 
 #include "builder/build/dataset_manifest.h"
+#include "tracer/base/disk_error.h"
 #include "tracer/base/error.h"
 #include "tracer/base/hash_stream.h"
 
@@ -61,6 +62,32 @@ Hash128 labels_of(DatasetRecord record, const Plan& plan) {
   return hash.hash();
 }
 
+/// As add_older_records does: a file that cannot be read is not known to be what a line says.
+Hash128 bytes_in_place(const PlacedFiles& placed, const std::string& path) {
+  try {
+    return placed.bytes_in_place(path).value_or(Hash128{});
+  } catch (const DiskFailed&) {
+    throw;
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+/// What decides which lines are taken over from the manifest before.
+void add_older(HashStream& listing, const ListedImages& images, const PlacedFiles& placed) {
+  if (images.lacking.empty()) return;
+  add_word(listing, "older");
+  OutputSettings every;  // a line may have files that the recipe no longer asks for
+  every.image = every.mask = every.depth = true;
+  for (const PlannedImage* image : images.lacking) {
+    add_word(listing, image->spec.id);
+    add_word(listing, image->refused ? "refused" : "");
+    if (image->refused) continue;
+    for (const std::string& path : output_paths(every, image->spec.id))
+      listing.add(bytes_in_place(placed, path));
+  }
+}
+
 /// Empty where the file stands as it was written.
 std::string why_not_as_written(const Dataset& dataset, const char* path,
                                const PlacedFiles& placed) {
@@ -69,7 +96,7 @@ std::string why_not_as_written(const Dataset& dataset, const char* path,
   const fs::path file = dataset.folder / path;
   const std::optional<FileStamp> stamp = stamp_of(file);
   if (!stamp) return fmt::format("{} is missing", path);
-  if (stamp != known->stamp && hash_file(file).xxh128 != known->object)
+  if (stamp != known->stamp && content_hash(file) != known->object)
     return fmt::format("{} was changed on the disk", path);
   return "";
 }
@@ -208,15 +235,14 @@ std::vector<std::string> differences(const Dataset& dataset, const Plan& plan, b
 
 }  // namespace
 
-ManifestSources manifest_sources(const Recipe& recipe, const Plan& plan,
-                                 const std::vector<const PlannedImage*>& listed,
+ManifestSources manifest_sources(const Recipe& recipe, const Plan& plan, const ListedImages& images,
                                  const PlacedFiles& placed) {
   ManifestSources sources;
   sources.labels = labels_of(description(recipe, plan), plan);
   sources.program = hash_text(program_version());
   HashStream listing;
   listing.add(sources.labels);
-  for (const PlannedImage* image : listed) {
+  for (const PlannedImage* image : images.made) {
     add_word(listing, image->spec.id);
     listing.add(image->keys.render);
     for (const OutputFile& output : image->keys.outputs) {
@@ -224,6 +250,7 @@ ManifestSources manifest_sources(const Recipe& recipe, const Plan& plan,
       if (const PlacedFiles::Row* file = placed.find(output.path)) listing.add(file->object);
     }
   }
+  add_older(listing, images, placed);
   sources.listing = listing.hash();
   return sources;
 }
@@ -261,8 +288,8 @@ void remember_manifest(Dataset& dataset, const ManifestSources& sources) {
   Transaction transaction(database.connection());
   const auto remember = [&](const char* path, Hash128 source) {
     const fs::path file = dataset.folder / path;
-    database.put_placed(dataset.row.id, {path, "", k_manifest_kind, source, hash_file(file).xxh128,
-                                         stamp_of(file)});
+    database.put_placed(dataset.row.id,
+                        {path, "", k_manifest_kind, source, content_hash(file), stamp_of(file)});
   };
   remember(k_images_file, sources.listing);
   remember(k_dataset_file, sources.labels);
@@ -274,21 +301,21 @@ void remember_manifest(Dataset& dataset, const ManifestSources& sources) {
 
 ManifestState manifest_state(const Dataset& dataset, const Plan& plan, const PlacedFiles& placed) {
   ManifestState state;
-  std::vector<const PlannedImage*> listed;
+  ListedImages images;
   bool any_stale = false, all_known = true;
   for (const PlannedImage& image : plan.images) {
     any_stale = any_stale || image.stale();
     all_known = all_known && !image.elsewhere && !image.error;
-    if (!image.error && !image.elsewhere && !image.stale()) listed.push_back(&image);
+    if (!image.error && !image.elsewhere && !image.stale()) images.made.push_back(&image);
   }
-  if (placed.find(k_images_file) == nullptr && listed.empty()) return state;  // never built
+  if (placed.find(k_images_file) == nullptr && images.made.empty()) return state;  // never built
   for (const char* path : k_manifest_files)
     if (const std::string why = why_not_as_written(dataset, path, placed); !why.empty())
       state.behind.push_back(why);
   if (!state.behind.empty()) return state;
   ManifestSources sources;
   try {
-    sources = manifest_sources(dataset.recipe, plan, listed, placed);
+    sources = manifest_sources(dataset.recipe, plan, images, placed);
   } catch (const Error& error) {  // a licence that cannot be read: no reason to plan nothing
     state.behind.emplace_back(error.what());
     return state;

@@ -17,9 +17,15 @@ struct ManifestSources {
   Hash128 program;  ///< checksums.xxh128: the version of dsbuild that writes
 };
 
-/// `listed`: the images of the plan whose files are in place.
-ManifestSources manifest_sources(const Recipe& recipe, const Plan& plan,
-                                 const std::vector<const PlannedImage*>& listed,
+/// Which images of a plan a manifest lists.
+struct ListedImages {
+  std::vector<const PlannedImage*> made;     ///< whose files are in place as the plan wants them
+  std::vector<const PlannedImage*> lacking;  ///< the others: listed as the manifest before had them
+};
+
+/// Lines taken over from the manifest before count by the bytes that are in their files' places: a
+/// manifest that stands and was written from the same sources would be written again.
+ManifestSources manifest_sources(const Recipe& recipe, const Plan& plan, const ListedImages& images,
                                  const PlacedFiles& placed);
 
 /// Hash of what a build of the plan makes of the folder: which images of which keys and labels. The

@@ -2,6 +2,7 @@
 #include "builder/build/placed_files.h"
 
 #include "tracer/base/files.h"
+#include "tracer/base/hash_stream.h"
 
 #include <algorithm>
 #include <fcntl.h>
@@ -54,7 +55,7 @@ std::string PlacedFiles::why_not_in_place(const std::string& image_id, const Out
   if (!stamp) return output.path + " is missing";
   if (placed->stamp == stamp && stamps_ == Stamps::trust) return "";
   const std::filesystem::path file = dataset_.folder / output.path;
-  if (hash_file(file).xxh128 != placed->object) return output.path + " was changed on the disk";
+  if (content_hash(file) != placed->object) return output.path + " was changed on the disk";
   // Its permissions were changed, or an older dsbuild placed it for root: an editor would write into
   // the store.
   if (dataset_.store && dataset_.store->is_object(file, placed->object) && may_write(file))
@@ -72,15 +73,19 @@ bool PlacedFiles::all_in_place(const std::string& image_id,
   });
 }
 
-bool PlacedFiles::in_place(const ImageRecord& record) {
+std::optional<Hash128> PlacedFiles::bytes_in_place(const std::string& path) const {
+  const std::optional<FileStamp> stamp =
+      folder_ >= 0 ? stamp_in(folder_, path.c_str()) : std::nullopt;
+  if (!stamp) return std::nullopt;
+  const Row* placed = find(path);
+  if (placed != nullptr && placed->stamp == stamp && stamps_ == Stamps::trust)
+    return placed->object;
+  return content_hash(dataset_.folder / path);
+}
+
+bool PlacedFiles::in_place(const ImageRecord& record) const {
   return std::all_of(record.files.begin(), record.files.end(), [&](const FileRecord& wanted) {
-    const std::filesystem::path file = dataset_.folder / wanted.path;
-    const std::optional<FileStamp> stamp = stamp_of(file);
-    if (!stamp) return false;
-    const Row* placed = find(wanted.path);
-    if (placed != nullptr && placed->object == wanted.hashes.xxh128 && placed->stamp == stamp)
-      return true;
-    return hash_file(file).xxh128 == wanted.hashes.xxh128;
+    return bytes_in_place(wanted.path) == wanted.hashes.xxh128;
   });
 }
 

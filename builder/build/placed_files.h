@@ -37,8 +37,11 @@ class PlacedFiles {
   bool all_in_place(const PlannedImage& image) {
     return all_in_place(image.spec.id, image.keys.outputs);
   }
+  /// Hash of the bytes of the file that is there now, whatever put them there; nothing where there
+  /// is none. Reads it where its stamp is not the one remembered. Throws Error(io).
+  std::optional<Hash128> bytes_in_place(const std::string& path) const;
   /// Whether every file of a manifest's line is there with the bytes that it says.
-  bool in_place(const ImageRecord& record);
+  bool in_place(const ImageRecord& record) const;
   /// What the database knew of a file; null where nothing.
   const Row* find(std::string_view path) const;
   /// The files of the shard's images that are of none of these images, or of one whose picture is

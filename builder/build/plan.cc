@@ -22,7 +22,7 @@ class Planner {
         keys_(keys),
         texts_(texts),
         force_(force),
-        placed_(dataset, stamps),
+        placed_(std::make_shared<PlacedFiles>(dataset, stamps)),
         rejected_(database_.pictures_with_rejected()) {
     known_.reserve(image_count(dataset.recipe));
     database_.visit_images(dataset.row.id, [&](std::string_view id, const PartHashes& parts) {
@@ -38,7 +38,7 @@ class Planner {
   const PartHashes* want(const std::string& id);
   /// Whether the database knows images that nobody wanted.
   bool forgets() const;
-  PlacedFiles& placed() { return placed_; }
+  const std::shared_ptr<PlacedFiles>& placed() { return placed_; }
 
  private:
   /// What the database has of an image, by the hash of its id.
@@ -60,7 +60,7 @@ class Planner {
   bool force_;
   std::vector<Known> known_;
   HashIndex by_id_;
-  PlacedFiles placed_;
+  std::shared_ptr<PlacedFiles> placed_;
   std::vector<Hash128> rejected_;  ///< ascending
 };
 
@@ -102,7 +102,7 @@ void Planner::find_kept(PlannedImage& image) {
 void Planner::plan_files(PlannedImage& image, bool changed) {
   for (const OutputFile& output : image.keys.outputs) {
     PlannedFile file{output, FileState::in_place};
-    const std::string reason = placed_.why_not_in_place(image.spec.id, output);
+    const std::string reason = placed_->why_not_in_place(image.spec.id, output);
     if (!reason.empty() || force_) {
       // Where a property changed, that is the reason, and the files of older keys follow from it.
       if (!reason.empty() && !changed) image.reasons.push_back(reason);
@@ -143,7 +143,7 @@ void Planner::plan(PlannedImage& image, const PartHashes* known) {
   if (image.elsewhere) return;
   const bool changed = known != nullptr && *known != image.keys.parts;
   const bool as_known = known != nullptr && !changed;
-  if (as_known && !force_ && placed_.all_in_place(image)) return;
+  if (as_known && !force_ && placed_->all_in_place(image)) return;
   keys_.add_texts(image.spec);
   if (force_) image.reasons.emplace_back("forced");
   if (known == nullptr) image.reasons.emplace_back("new");
@@ -182,6 +182,7 @@ std::uint64_t PlannedImage::samples() const {
 
 Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
   Plan plan;
+  plan.data_version = dataset.database->data_version();
   std::optional<Snapshot> snapshot(std::in_place, dataset.database->connection());
   KeyMaker keys(dataset.recipe, inputs, plan.texts);
   Planner planner(dataset, keys, plan.texts, force, inputs.stamps());
@@ -222,12 +223,13 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
     }
     plan.images.push_back(std::move(image));
   });
-  plan.to_remove = planner.placed().left_over(plan.images, shard);
+  plan.placed = planner.placed();
+  plan.to_remove = plan.placed->left_over(plan.images, shard);
   plan.forgets = planner.forgets();
   snapshot.reset();
-  plan.manifest = manifest_state(dataset, plan, planner.placed());
+  plan.manifest = manifest_state(dataset, plan, *plan.placed);
   inputs.remember();
-  planner.placed().remember_stamps();
+  plan.placed->remember_stamps();
   return plan;
 }
 

@@ -10,11 +10,14 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace ds {
+
+class PlacedFiles;
 
 /// PlacedFile::kind of the manifest's own files.
 inline constexpr const char* k_manifest_kind = "manifest";
@@ -74,6 +77,8 @@ struct Plan {
   bool forgets = false;                ///< the database knows images that the recipe has no more
   ManifestState manifest;
   TextSet texts;
+  std::shared_ptr<PlacedFiles> placed;        ///< as the plan found them; refers to the dataset
+  std::int64_t data_version = 0;              ///< Database::data_version before anything was read
   std::map<std::string, MendedModel> mended;  ///< by model name, of all shards' images
 };
 

@@ -28,6 +28,8 @@ class TextSet {
   Hash128 add(std::string_view canonical);
   /// The folded text.
   const std::string* find(Hash128 hash) const;
+  /// How many texts are kept, the long values among them.
+  std::size_t size() const { return texts_.size(); }
   /// Calls `visit` for the text and for those it refers to.
   void visit(Hash128 hash, const std::function<void(Hash128, const std::string&)>& visit) const;
 

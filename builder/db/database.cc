@@ -164,6 +164,20 @@ std::vector<Hash128> Database::pictures_with_rejected() {
   return keys;
 }
 
+std::vector<std::pair<Hash128, double>> Database::capped_pictures() {
+  std::vector<std::pair<Hash128, double>> pictures;
+  // As the index product_capped says it.
+  Statement row = connection_->prepare(
+      "SELECT key, json_valid(facts), CASE WHEN json_valid(facts) THEN "
+      "json_extract(facts, '$.developed_high') END FROM product WHERE "
+      "instr(facts, '\"capped\":true') > 0 AND kind = 'image'");
+  while (row.step()) {
+    if (row.integer(1) == 0) throw DamagedDatabase("the database is damaged: facts: no JSON");
+    pictures.emplace_back(hash_column(row, 0), row.optional_real(2).value_or(0));
+  }
+  return pictures;
+}
+
 std::optional<Product> Database::find_product(Hash128 key) {
   Statement row = connection_->prepare(
       "SELECT kind, object, size_bytes, sha256, pixels, tone_map_scale, rejected_samples, "

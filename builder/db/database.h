@@ -83,6 +83,8 @@ struct DatasetRow {
   std::filesystem::path working_folder;  ///< what relative paths in `overrides` start from
   std::vector<std::string> overrides;
   Hash128 manifest;  ///< of what the manifest was written from, zero before the first
+
+  bool operator==(const DatasetRow&) const = default;
 };
 
 struct BuildRow {
@@ -128,6 +130,9 @@ class Database {
   bool has_products();
   /// Keys of the pictures of which some samples had to be left out: few.
   std::vector<Hash128> pictures_with_rejected();
+  /// The keys of pictures that engine.max_spp ended before engine.error was reached, and the upper
+  /// end of each one's error.
+  std::vector<std::pair<Hash128, double>> capped_pictures();
   std::optional<Product> find_product(Hash128 key);
   void put_product(const Product& product, const TraceRun& run);
   /// Adds counts to a product that was made without; nothing where there is no such product.

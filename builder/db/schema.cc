@@ -77,9 +77,11 @@ CREATE TABLE build (
 CREATE INDEX build_dataset ON build (dataset);
 CREATE INDEX product_rejected ON product (key)
   WHERE rejected_samples > 0 AND kind = 'image';
-PRAGMA user_version = 6;
+CREATE INDEX product_capped ON product (key)
+  WHERE instr(facts, '"capped":true') > 0 AND kind = 'image';
+PRAGMA user_version = 7;
 )sql";
-static_assert(k_schema_version == 6, "the last line of k_tables states the version too");
+static_assert(k_schema_version == 7, "the last line of k_tables states the version too");
 
 /// From version 1 to 2.
 constexpr const char* k_add_facts = R"sql(
@@ -111,7 +113,13 @@ CREATE TABLE sphere (
 constexpr const char* k_add_rejected = R"sql(
 CREATE INDEX IF NOT EXISTS product_rejected ON product (key)
   WHERE rejected_samples > 0 AND kind = 'image';
-PRAGMA user_version = 6;
+)sql";
+
+/// From version 6 to 7. Likewise of pictures that did not reach their error, in every build.
+constexpr const char* k_add_capped = R"sql(
+CREATE INDEX IF NOT EXISTS product_capped ON product (key)
+  WHERE instr(facts, '"capped":true') > 0 AND kind = 'image';
+PRAGMA user_version = 7;
 )sql";
 
 std::int64_t user_version(Connection& connection) {
@@ -141,7 +149,8 @@ void prepare_schema(Connection& connection, const std::string& name) {
     if (version < 3) connection.execute(k_add_damage);
     if (version < 4) connection.execute(k_add_ctime);
     if (version < 5) connection.execute(k_add_sphere);
-    connection.execute(k_add_rejected);
+    if (version < 6) connection.execute(k_add_rejected);
+    connection.execute(k_add_capped);
     transaction.commit();
     return;
   }

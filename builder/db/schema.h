@@ -13,9 +13,10 @@ namespace ds {
 ///      their files are read once more
 ///   5: sphere
 ///   6: product_rejected
+///   7: product_capped
 /// An older file is converted when it is opened; a newer one is refused, since writing to it could
 /// lose what this program does not know.
-inline constexpr int k_schema_version = 6;
+inline constexpr int k_schema_version = 7;
 
 /// Makes the tables where the file is new. Throws Error(io) for a file of a newer version,
 /// DamagedDatabase for one that is some other program's.

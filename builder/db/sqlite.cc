@@ -92,6 +92,13 @@ int Connection::changes() const {
   return sqlite3_changes(handle_);
 }
 
+std::int64_t Connection::runs() const {
+  std::int64_t runs = 0;
+  for (const auto& [sql, statement] : statements_)
+    runs += sqlite3_stmt_status(statement, SQLITE_STMTSTATUS_RUN, 0);
+  return runs;
+}
+
 Statement::~Statement() {
   // The code repeats what `step` reported already.
   sqlite3_reset(handle_);

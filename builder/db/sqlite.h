@@ -85,6 +85,8 @@ class Connection {
   void check();
   /// Rows the last statement changed.
   int changes() const;
+  /// How often prepared statements were run: what a command asks, for tests of what it costs.
+  std::int64_t runs() const;
 
  private:
   friend class Statement;

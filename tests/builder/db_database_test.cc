@@ -147,7 +147,7 @@ TEST(Database, ReadsAFileOfVersionOne) {
   {
     Connection connection(file);
     connection.execute(
-        "ALTER TABLE product DROP COLUMN facts; "
+        "DROP INDEX product_capped; ALTER TABLE product DROP COLUMN facts; "
         "ALTER TABLE geometry DROP COLUMN damage; "
         "ALTER TABLE input_file DROP COLUMN ctime_ns; "
         "ALTER TABLE placed DROP COLUMN ctime_ns; DROP TABLE sphere; PRAGMA user_version = 1");
@@ -273,6 +273,26 @@ TEST(Database, KnowsThePicturesThatLackSamples) {
   product.rejected_samples = 0;
   database.put_product(product, {});
   EXPECT_EQ(database.pictures_with_rejected(), std::vector{k_a});
+}
+
+TEST(Database, KnowsThePicturesThatDidNotReachTheirError) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "db.sqlite";
+  {
+    Database database(file);
+    FilmFacts facts;
+    database.put_product({k_b, "image", k_b, 17, "", k_a, 1, 0, {}, facts}, {});
+    facts.capped = true;
+    facts.developed_high = 0.125;
+    database.put_product({k_a, "image", k_b, 17, "", k_a, 1, 0, {}, facts}, {});
+    database.put_product({hash_text("film"), "film", k_b, 17, "", k_a, 1, 0, {}, facts}, {});
+    EXPECT_EQ(database.capped_pictures(), (std::vector{std::pair(k_a, 0.125)}));
+  }
+  // Version 6 looked at every picture instead.
+  Connection(file).execute("DROP INDEX product_capped; PRAGMA user_version = 6");
+  EXPECT_EQ(Database(file).capped_pictures(), (std::vector{std::pair(k_a, 0.125)}));
+  Connection(file).execute("UPDATE product SET facts = '{\"capped\":true' WHERE kind = 'image'");
+  EXPECT_THROW(Database(file).capped_pictures(), DamagedDatabase);
 }
 
 TEST(Database, FindsAPageWithOtherBytes) {

@@ -120,6 +120,41 @@ TEST_F(ManifestStateTest, AnOlderImageWhoseFileIsGoneIsNotListed) {
   EXPECT_FALSE(records().contains(id));
 }
 
+// Nothing changes between the builds but the files of an image that cannot be made.
+TEST_F(ManifestStateTest, AStandingManifestOfABrokenRecipeFollowsTheFiles) {
+  build();
+  spoil("environments/floor/environment.scn");
+  std::vector<std::string> ids;
+  for (const PlannedImage& image : plan().images)
+    if (image.error) ids.push_back(image.spec.id);
+  for (const bool keep_going : {true, false}) {
+    build({.keep_going = keep_going});
+    const auto stamp = stamp_of(output() / "manifest/images.jsonl");
+    build({.keep_going = !keep_going});
+    EXPECT_EQ(stamp_of(output() / "manifest/images.jsonl"), stamp) << "written again for nothing";
+    const fs::path mask = output() / output_path(ids.back(), "mask");
+    if (keep_going)
+      fs::remove(mask);
+    else
+      write_file_atomic(mask, std::string_view("another's"));
+    build({.keep_going = keep_going});
+    EXPECT_FALSE(records().contains(ids.back()));
+    ids.pop_back();
+    EXPECT_TRUE(records().contains(ids.back()));
+  }
+}
+
+TEST_F(ManifestStateTest, LinesOfImagesThatNoRecipeHasAreLookedAtAgain) {
+  build();
+  fs::remove(recipe_folder() / "models/tetra.ply");
+  spoil("environments/floor/environment.scn");
+  build();  // stops at once
+  EXPECT_EQ(records().size(), k_images);
+  fs::remove(output() / output_path("tetra.ply/0", "mask"));
+  build();
+  EXPECT_EQ(records().size(), k_images - 1);
+}
+
 TEST_F(ManifestStateTest, ABuildCutShortListsWhatIsInPlace) {
   build();
   edit("materials/red.mat", "kd = 0.7 0.1 0.1", "kd = 0.75 0.1 0.1");
