@@ -27,6 +27,7 @@ class Renderer {
   virtual Geometry trace_geometry(const ImageSpec& image) = 0;
   /// Images that will be traced, in this order, one of each kind: what they need is got ready in
   /// the background while others are traced. They must outlive the renderer.
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): who overrides it keeps the list
   virtual void announce(std::vector<const ImageSpec*> /*images*/) {}
   virtual ProgramCounts programs() const { return {}; }
   virtual std::string device() const = 0;

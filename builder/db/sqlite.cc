@@ -121,7 +121,7 @@ Statement& Statement::bind(int parameter, std::string_view value) {
   // Not null for an empty view: a null pointer would bind NULL. The destructor argument makes
   // SQLite copy.
   const char* data = value.data() != nullptr ? value.data() : "";
-  const auto copy =
+  const auto copy =  // NOLINTNEXTLINE(performance-no-int-to-ptr): never followed
       reinterpret_cast<sqlite3_destructor_type>(-1);  // SQLITE_TRANSIENT without its C cast
   const int code = sqlite3_bind_text64(handle_, parameter, data, value.size(), copy, SQLITE_UTF8);
   if (code != SQLITE_OK) connection_.fail_sqlite(code);

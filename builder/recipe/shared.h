@@ -15,11 +15,14 @@ class Shared {
   Shared() : value_(nothing()) {}
   template <typename U>
   requires(std::is_convertible_v<U, T> && !std::is_same_v<std::remove_cvref_t<U>, Shared>)
+      // It stands for the value; the constraint keeps it off copies, which clang-tidy does not see.
+      // NOLINTNEXTLINE(google-explicit-constructor,bugprone-forwarding-reference-overload)
       Shared(U&& value)
       : value_(std::make_shared<const T>(std::forward<U>(value))) {}
 
   const T& operator*() const { return *value_; }
   const T* operator->() const { return value_.get(); }
+  // NOLINTNEXTLINE(google-explicit-constructor): as above
   operator const T&() const { return *value_; }
   /// Whether both hold one object, which says at once that the values are equal.
   bool is_same(const Shared& other) const { return value_ == other.value_; }
