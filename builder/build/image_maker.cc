@@ -83,7 +83,7 @@ Product ImageMaker::keep(Work& work, Product product, const std::vector<std::byt
 }
 
 /// An empty one where none is kept, or it cannot be read: then tracing starts anew.
-FilmSums ImageMaker::kept_film(const Work& work) {
+FilmSums ImageMaker::kept_film(const Work& work) const {
   if (work.force || !dataset_.recipe.keep_sums) return {};
   const std::optional<Product> known = dataset_.database->find_product(work.image.keys.kept);
   const auto bytes = known ? dataset_.store->get(known->object) : std::nullopt;

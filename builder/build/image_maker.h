@@ -58,7 +58,7 @@ class ImageMaker {
   std::optional<Product> find_whole(Hash128 key);
   Film obtain_film(Work& work);
   Film trace_film(Work& work);
-  FilmSums kept_film(const Work& work);
+  FilmSums kept_film(const Work& work) const;
   void keep_sums(Work& work, const FilmSums& sums, std::uint64_t had, const TraceRun& run);
   Product develop_image(Work& work, const OutputFile& output);
   Product make_geometry_file(Work& work, const OutputFile& output);

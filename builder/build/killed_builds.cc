@@ -5,9 +5,9 @@
 
 #include <cerrno>
 #include <charconv>
+#include <csignal>
 #include <filesystem>
 #include <optional>
-#include <signal.h>
 #include <string>
 #include <string_view>
 #include <unistd.h>
