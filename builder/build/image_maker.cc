@@ -63,7 +63,7 @@ Renderer& ImageMaker::renderer() {
   return *renderer_;
 }
 
-std::optional<Product> ImageMaker::find_whole(Hash128 key) {
+std::optional<Product> ImageMaker::find_whole(Hash128 key) const {
   std::optional<Product> product = dataset_.database->find_product(key);
   // The row of a lost object stays: files placed of it before are still what it says.
   if (product && !dataset_.store->intact(product->object)) return std::nullopt;
@@ -71,7 +71,7 @@ std::optional<Product> ImageMaker::find_whole(Hash128 key) {
 }
 
 Product ImageMaker::keep(Work& work, Product product, const std::vector<std::byte>& bytes,
-                         const TraceRun& run) {
+                         const TraceRun& run) const {
   product.object = dataset_.store->put(bytes);
   product.size_bytes = bytes.size();
   product.sha256 = sha256_hex(bytes);

@@ -55,7 +55,7 @@ class ImageMaker {
  private:
   struct Work;
   Product obtain(Work& work, const OutputFile& output);
-  std::optional<Product> find_whole(Hash128 key);
+  std::optional<Product> find_whole(Hash128 key) const;
   Film obtain_film(Work& work);
   Film trace_film(Work& work);
   FilmSums kept_film(const Work& work) const;
@@ -63,7 +63,7 @@ class ImageMaker {
   Product develop_image(Work& work, const OutputFile& output);
   Product make_geometry_file(Work& work, const OutputFile& output);
   Product keep(Work& work, Product product, const std::vector<std::byte>& bytes,
-               const TraceRun& run);
+               const TraceRun& run) const;
   void commit(const PlannedImage& image, const std::vector<MadeProduct>& made,
               const std::vector<PlacedFile>& placed);
   void refuse_over_limit(const Work& work, const Product& picture);

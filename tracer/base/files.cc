@@ -88,7 +88,7 @@ class TemporaryName {
 
 /// A target with a parent folder, which exists.
 fs::path prepare_target(const fs::path& path) {
-  const fs::path target = fs::absolute(path);
+  fs::path target = fs::absolute(path);
   make_folders(target.parent_path());
   return target;
 }

@@ -166,7 +166,9 @@ class PhotonTracer {
 
   double area(natural triangle) const {
     const float* row = triangles_.data() + std::size_t{triangle} * kernels::k_triangle_words;
-    const auto at = [&](int i) { return Vec3d{row[3 * i], row[3 * i + 1], row[3 * i + 2]}; };
+    const auto at = [&](std::size_t i) {
+      return Vec3d{row[3 * i], row[3 * i + 1], row[3 * i + 2]};
+    };
     const Vec3d normal = cross(at(1) - at(0), at(2) - at(0));
     return std::sqrt(dot(normal, normal)) / 2;
   }

@@ -77,8 +77,8 @@ class Schedule {
   };
   /// `stepped`: tiles with new samples; `stale`: those whose pixels' filters reach into one.
   void measure(const std::vector<std::size_t>& stepped, const std::vector<std::size_t>& stale);
-  void measure_error(std::size_t tile);
-  void measure_own(std::size_t tile);
+  void measure_error(std::size_t number);
+  void measure_own(std::size_t number);
   double sample_variance(std::size_t tile) const;
   double gain(std::size_t tile) const;
   std::vector<TileStep> greatest_gains() const;
