@@ -58,7 +58,7 @@ ImageMaker::ImageMaker(Dataset& dataset, Inputs& inputs, const TextSet& texts, D
 Renderer& ImageMaker::renderer() {
   if (!renderer_) {
     renderer_ = factory_();
-    renderer_->announce(std::move(upcoming_));
+    renderer_->announce(std::exchange(upcoming_, {}));
   }
   return *renderer_;
 }
