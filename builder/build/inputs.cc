@@ -11,12 +11,14 @@ namespace ds {
 
 namespace {
 
-/// Stands in the database beside what was mended.
+/// Stand in the database beside what was mended.
 constexpr const char* k_has_uvs = "has_uvs";
+constexpr const char* k_has_colors = "has_colors";
 
 MendedDamage damage_and_facts(const MeshReport& report) {
   MendedDamage known = mended_damage(report);
   if (report.has_uvs) known.emplace_back(k_has_uvs, 1);
+  if (report.has_colors) known.emplace_back(k_has_colors, 1);
   return known;
 }
 
@@ -65,7 +67,9 @@ const Inputs::ModelFacts& Inputs::model(const std::filesystem::path& file) {
     facts.geometry = known.geometry;
     for (const auto& [name, count] : known.damage) {
       if (name == k_has_uvs)
-        facts.has_uvs = true;
+        facts.has.uvs = true;
+      else if (name == k_has_colors)
+        facts.has.colors = true;
       else
         facts.damage.emplace_back(name, count);
     }

@@ -17,6 +17,11 @@
 namespace ds {
 
 /// Whether a file whose stamp is known is taken for the one that was read before.
+/// What a mesh has that textures may read.
+struct MeshHas {
+  bool uvs = false, colors = false;
+};
+
 enum class Stamps {
   trust,
   ignore,  ///< every file is read: a disk's or a file system's fault leaves the stamp as it was
@@ -38,8 +43,8 @@ class Inputs {
   const MendedDamage& model_damage(const std::filesystem::path& file) { return model(file).damage; }
   /// The ball around the model as it is normalised. Reads it where the database does not know it.
   const Sphere& model_sphere(const std::filesystem::path& file, const NormaliseOptions& options);
-  /// Whether its mesh has uv; throws likewise.
-  bool model_has_uvs(const std::filesystem::path& file) { return model(file).has_uvs; }
+  /// What its mesh has beside places; throws likewise.
+  MeshHas model_has(const std::filesystem::path& file) { return model(file).has; }
   /// Reads and normalises. Throws Error(asset) where the file is no longer the one `model_geometry`
   /// saw.
   Mesh model_mesh(const std::filesystem::path& file, const NormaliseOptions& options);
@@ -64,7 +69,7 @@ class Inputs {
   struct ModelFacts {
     Hash128 geometry;
     MendedDamage damage;
-    bool has_uvs = false;
+    MeshHas has;
   };
   const ModelFacts& model(const std::filesystem::path& file);
   KnownModel look_at_model(const std::filesystem::path& file);

@@ -15,14 +15,17 @@ namespace ds {
 namespace {
 
 struct Needs {
-  bool uvs = false;
+  bool uvs = false, colors = false;
   std::set<std::string> seen;  ///< models
 };
 
 Needs needs_of(const Scene& material) {
   Needs needs;
-  for (const Texture& texture : material.textures)
-    needs.uvs = needs.uvs || reads_uvs(texture_types()[static_cast<std::size_t>(texture.type)]);
+  for (const Texture& texture : material.textures) {
+    const NodeType& type = texture_types()[static_cast<std::size_t>(texture.type)];
+    needs.uvs = needs.uvs || reads_uvs(type);
+    needs.colors = needs.colors || reads_colors(type);
+  }
   return needs;
 }
 
@@ -30,7 +33,7 @@ Needs needs_of(const Scene& material) {
 
 std::vector<Lacking> find_lacking(const Plan& plan, Inputs& inputs) {
   std::unordered_map<std::string, Needs> needs;
-  std::map<std::string, std::vector<std::string>> found;
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> found;
   for (const PlannedImage& image : plan.images) {
     if (image.elsewhere || image.error) continue;
     const ImageSpec& spec = image.spec;
@@ -40,13 +43,15 @@ std::vector<Lacking> find_lacking(const Plan& plan, Inputs& inputs) {
           needs.emplace(spec.material_file->native(), needs_of(inputs.material(spec.material_file)))
               .first;
     Needs& need = known->second;
-    if (!need.uvs || !need.seen.insert(spec.model_name).second) continue;
-    if (!inputs.model_has_uvs(spec.model_file))
-      found[spec.material_file->filename().string()].push_back(spec.model_name);
+    if (!(need.uvs || need.colors) || !need.seen.insert(spec.model_name).second) continue;
+    const MeshHas has = inputs.model_has(spec.model_file);
+    const std::string material = spec.material_file->filename().string();
+    if (need.uvs && !has.uvs) found[{material, "uv"}].push_back(spec.model_name);
+    if (need.colors && !has.colors) found[{material, "colours"}].push_back(spec.model_name);
   }
   std::vector<Lacking> lacking;
-  for (auto& [material, models] : found)
-    lacking.push_back({material, std::move(models)});
+  for (auto& [what, models] : found)
+    lacking.push_back({what.first, what.second, std::move(models)});
   return lacking;
 }
 
@@ -54,8 +59,8 @@ std::string to_text(const Lacking& lacking) {
   constexpr std::size_t k_most_named = 5;
   const std::size_t count = lacking.models.size(), named = std::min(count, k_most_named);
   std::string text =
-      fmt::format("{}: its textures read uv, which {} not have: {}", lacking.material,
-                  count == 1 ? "1 model does" : fmt::format("{} models do", count),
+      fmt::format("{}: its textures read {}, which {} not have: {}", lacking.material,
+                  lacking.reads, count == 1 ? "1 model does" : fmt::format("{} models do", count),
                   fmt::join(lacking.models.begin(),
                             lacking.models.begin() + static_cast<std::ptrdiff_t>(named), ", "));
   if (count > named) text += fmt::format(" and {} more", count - named);

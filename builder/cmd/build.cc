@@ -106,7 +106,8 @@ void warn_of_mended(const Plan& plan) {
 nlohmann::json to_json(const std::vector<Lacking>& all) {
   nlohmann::json list = nlohmann::json::array();
   for (const Lacking& lacking : all)
-    list.push_back({{"material", lacking.material}, {"models", lacking.models}});
+    list.push_back(
+        {{"material", lacking.material}, {"reads", lacking.reads}, {"models", lacking.models}});
   return list;
 }
 
@@ -178,7 +179,7 @@ int run_build(const Arguments& arguments) {
     say(Stream::people, "dsbuild: stopped; what is finished is recorded, build again to go on\n");
   const std::size_t concerns = tell_concerns(result.concerns, dataset.recipe, arguments.strict);
   nlohmann::json told = to_json(result, dataset);
-  told["lacking_uv"] = to_json(all_lacking);
+  told["lacking"] = to_json(all_lacking);
   if (arguments.json)
     print_json(told);
   else

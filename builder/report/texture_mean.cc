@@ -26,7 +26,27 @@ namespace {
 
 static_assert(DS_TEXTURE_STACK == k_texture_stack_limit);
 
-/// A texture's program and its images' texels, as the kernels read them.
+using CornerColors = std::array<MeshColor, 3>;
+static_assert(sizeof(CornerColors) == kernels::k_color_words * sizeof(float));
+
+/// Of the mesh's corners; white where it has none.
+CornerColors colors_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& corners) {
+  constexpr MeshColor k_white{1, 1, 1, 1};
+  CornerColors colors{k_white, k_white, k_white};
+  for (std::size_t i = 0; i < 3 && !mesh.colors.empty(); ++i)
+    colors[i] = mesh.colors[corners[i]];
+  return colors;
+}
+
+/// A point of a triangle, as the kernels' textures see it.
+struct Place {
+  Vec3 position;
+  Vec2 uv;
+  float b1, b2;
+  CornerColors colors;
+};
+
+/// A texture's program and the tables it reads: a row of colours, then the images' texels.
 class TextureProgram {
  public:
   TextureProgram(const Scene& scene, int texture) {
@@ -36,10 +56,11 @@ class TextureProgram {
     material.inputs.resize(matte.inputs.size());
     material.inputs[static_cast<std::size_t>(find_input(matte, "kd"))].texture = texture;
     TextureCode code = texture_code(scene, material);
+    tables_.resize(kernels::k_color_words);
     std::vector<std::uint32_t> offsets;
     for (const Image& image : scene.images) {
-      offsets.push_back(static_cast<std::uint32_t>(texels_.size()));
-      texels_.insert(texels_.end(), image.rgb.begin(), image.rgb.end());
+      offsets.push_back(static_cast<std::uint32_t>(tables_.size()));
+      tables_.insert(tables_.end(), image.rgb.begin(), image.rgb.end());
     }
     for (const std::size_t i : code.image_words)
       code.words[i] = offsets[code.words[i]];
@@ -47,16 +68,21 @@ class TextureProgram {
       words_.push_back(std::bit_cast<float>(word));
   }
 
-  Vec3 at(const Vec3& position, const Vec2& uv) const {
+  Vec3 at(const Place& place) {
+    for (std::size_t i = 0; i < 3; ++i)
+      std::copy(place.colors[i].begin(), place.colors[i].end(),
+                tables_.begin() + 4 * static_cast<std::ptrdiff_t>(i));
+    const Vec3 p = place.position;
     std::array<float, 64> inputs{};
-    kernels::run_texture_program(words_.data(), texels_.data(),
-                                 {kernels::vec(position.x, position.y, position.z), uv.x, uv.y},
-                                 true, inputs.data());
+    kernels::run_texture_program(
+        words_.data(), tables_.data(),
+        {kernels::vec(p.x, p.y, p.z), place.uv.x, place.uv.y, place.b1, place.b2, 0}, true,
+        inputs.data());
     return {inputs[0], inputs[1], inputs[2]};
   }
 
  private:
-  std::vector<float> words_, texels_;
+  std::vector<float> words_, tables_;
 };
 
 double area(const Mesh& mesh, const std::array<std::uint32_t, 3>& corners) {
@@ -102,7 +128,7 @@ bool uses_texture(const Material& material, int texture) {
 std::optional<Vec3> texture_mean(const Scene& scene, int texture, int points) {
   const std::vector<Patch> patches = patches_with(scene, texture);
   if (patches.empty() || patches.back().area_until <= 0) return std::nullopt;
-  const TextureProgram program(scene, texture);
+  TextureProgram program(scene, texture);
   Vec3d sum{};
   for (int i = 0; i < points; ++i) {
     // The first three numbers of the R3 sequence (Roberts 2018), of even cover in three dimensions.
@@ -121,7 +147,9 @@ std::optional<Vec3> texture_mean(const Scene& scene, int texture, int points) {
       uv.x += static_cast<float>(weights[k]) * patch->mesh->uvs[corner].x;
       uv.y += static_cast<float>(weights[k]) * patch->mesh->uvs[corner].y;
     }
-    sum = sum + to_double(program.at(to_float(position), uv));
+    sum = sum + to_double(program.at({to_float(position), uv, static_cast<float>(weights[1]),
+                                      static_cast<float>(weights[2]),
+                                      colors_of(*patch->mesh, patch->corners)}));
   }
   return to_float((1.0 / points) * sum);
 }

@@ -47,6 +47,9 @@ kernels::real3 evaluate(const Scene& scene, const TextureRef& ref, Vec3 position
   const Texture& texture = scene.textures[static_cast<std::size_t>(ref.texture)];
   if (texture.image >= 0)
     fail(ErrorKind::asset, "texture {}: an image cannot be exported to the peers", texture.name);
+  if (reads_colors(texture_types()[static_cast<std::size_t>(texture.type)]))
+    fail(ErrorKind::asset, "texture {}: colours of meshes cannot be exported to the peers",
+         texture.name);
   std::vector<kernels::real3> inputs;
   for (const TextureRef& input : texture.inputs)
     inputs.push_back(evaluate(scene, input, position));

@@ -98,7 +98,7 @@ TEST(Geometry, FlippedWindingChangesNothingOfAMatteBody) {
       p, [&](const Film& film) { EXPECT_NEAR(hard::mean_of(film), hard::mean_of(usual), 1e-3); });
 }
 
-TEST(Geometry, NormalsThatOpposeTheirFacesMakeNoEnergyAndNoHoles) {
+TEST(Geometry, NormalsThatOpposeTheirFacesLoseNoLightAndMakeNone) {
   for (const std::string& material : hard::materials(true)) {
     Picture p = white_sphere(material + ", normals at random", true);
     p.engine.spp = 64;
@@ -109,6 +109,7 @@ TEST(Geometry, NormalsThatOpposeTheirFacesMakeNoEnergyAndNoHoles) {
         if (find_input(material_types()[static_cast<std::size_t>(p.scene.materials[m].type)],
                        input) >= 0)
           pictures::set_input(p.scene, static_cast<int>(m), input, {1, 1, 1});
+    const double usual = hard::mean_of(hard::trace(p, {}));
     std::mt19937 random(4);
     std::uniform_real_distribution<float> u(-1, 1);
     Mesh& mesh = p.scene.objects[0].mesh;
@@ -117,10 +118,13 @@ TEST(Geometry, NormalsThatOpposeTheirFacesMakeNoEnergyAndNoHoles) {
                         : i % 3 == 1 ? normalized(Vec3{u(random), u(random), u(random)})
                                      : Vec3{};
     hard::everywhere(p, [&](const Film& film) {
-      // Light that a wrong normal would send into the body is dropped; none is made. Glass inside
-      // out is n^2 times as bright.
-      EXPECT_LT(hard::mean_of(film), material == "glass" ? 2.3 : 1.02);
-      EXPECT_GT(hard::mean_of(film), 0.3);
+      // What reflects all light from every angle does so about any normal; a metal's reflectance
+      // is another at another angle, and a coat is rough.
+      const bool all = material == "matte" || material == "mirror" || material == "glass";
+      EXPECT_NEAR(hard::mean_of(film), usual, (all ? 1e-3 : 0.06) * usual);
+      if (all) {
+        EXPECT_NEAR(usual, 1, 1e-3);
+      }
     });
   }
 }

@@ -79,8 +79,13 @@ void add_every_texture(Scene& scene) {
     before = {{}, add_texture(scene, texture_types()[i].name, before)};
     const int material = add_material(scene, "matte");
     scene.materials.back().inputs[0] = before;
-    const float x = (static_cast<float>(i) - 0.5f * static_cast<float>(count - 1)) * 0.36f;
-    add_object(scene, quad({x, 0.5f, 0.1f}, {0.17f, 0, 0.02f}, {0, 0.1f, 0.4f}), material);
+    const float x = (static_cast<float>(i) - 0.5f * static_cast<float>(count - 1)) * 0.26f;
+    Mesh panel = quad({x, 0.5f, 0.1f}, {0.12f, 0, 0.02f}, {0, 0.1f, 0.4f});
+    panel.colors = {{0.9f, 0.1f, 0.1f, 0.2f},
+                    {0.1f, 0.8f, 0.1f, 0.4f},
+                    {0.1f, 0.1f, 0.7f, 0.6f},
+                    {0.6f, 0.6f, 0, 0.8f}};
+    add_object(scene, std::move(panel), material);
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of the table of lights in the making: what pack_lights.cc and pack_infinite.cc share.
+// Rows of the tables in the making, for scene_pack.cc and the pack_*.cc between themselves.
 #pragma once
 
 #include "tracer/device/scene_pack.h"
@@ -26,5 +26,9 @@ void add_cumulative(const std::vector<double>& weights, Words& tables);
 /// exponent of 8 bits and mantissas of 8 bits hold exactly, as those of .hdr files are, are kept in
 /// one word each.
 LightRow infinite_row(const Scene& scene, const Light& light, double scene_radius, Words& tables);
+
+/// Rows of colours in the tables (kernels/types.h), and their offset; none where no texture of the
+/// program reads them.
+std::uint32_t pack_colors(const Scene& scene, const Features& features, Words& tables);
 
 }  // namespace ds

@@ -2,6 +2,7 @@
 #include "tracer/device/scene_pack.h"
 
 #include "tracer/base/error.h"
+#include "tracer/device/pack_rows.h"
 #include "tracer/device/texture_code.h"
 #include "tracer/device/ties.h"
 #include "tracer/kernels/all_nodes.h"
@@ -81,7 +82,8 @@ std::vector<std::uint32_t> pack_texels(const Scene& scene, Words& tables) {
 
 /// The material's program with the scene's numbers put in; its offset, or k_none.
 std::uint32_t pack_program(const Scene& scene, const Material& material, const Features& features,
-                           const std::vector<std::uint32_t>& texels, Words& programs) {
+                           const std::vector<std::uint32_t>& texels, std::uint32_t colors,
+                           Words& programs) {
   TextureCode code = texture_code(scene, material);
   if (code.words.empty()) return k_none;
   for (const std::size_t i : code.op_words) {
@@ -91,6 +93,8 @@ std::uint32_t pack_program(const Scene& scene, const Material& material, const F
   }
   for (const std::size_t i : code.image_words)
     code.words[i] = texels[code.words[i]];
+  for (const std::size_t i : code.color_words)
+    code.words[i] = colors;
   const std::uint32_t offset = programs.offset();
   for (const std::uint32_t word : code.words)
     programs.add(word);
@@ -110,7 +114,8 @@ void pack_inputs(const Material& material, Words& out) {
 }
 
 void pack_materials(const Scene& scene, const Features& features,
-                    const std::vector<std::uint32_t>& texels, PackedScene& packed) {
+                    const std::vector<std::uint32_t>& texels, std::uint32_t colors,
+                    PackedScene& packed) {
   const auto row_words =
       static_cast<std::uint32_t>(kernels::k_material_head + features.material_inputs);
   packed.data.material_words = row_words;
@@ -124,7 +129,7 @@ void pack_materials(const Scene& scene, const Features& features,
     // no number.
     out.add(static_cast<std::uint32_t>(number >= 0 ? number
                                                    : static_cast<int>(features.materials.size())));
-    out.add(pack_program(scene, material, features, texels, packed.programs));
+    out.add(pack_program(scene, material, features, texels, colors, packed.programs));
     for (const int child : material.children)
       out.add(static_cast<std::uint32_t>(std::max(child, 0)));
     out.add(material.emission.constant);
@@ -153,7 +158,8 @@ PackedScene pack_scene(const Scene& scene, const Features& features, BvhQuality 
   PackedScene packed;
   packed.bvh = build_bvh(corners, quality, bvh_width);
   const std::vector<std::uint32_t> texels = pack_texels(scene, packed.tables);
-  pack_materials(scene, features, texels, packed);
+  const std::uint32_t colors = pack_colors(scene, features, packed.tables);
+  pack_materials(scene, features, texels, colors, packed);
   std::vector<std::uint32_t> mesh_lights;
   pack_lights(scene, features, packed, mesh_lights);
   const Ties ties = find_ties(scene, corners, packed.bvh);

@@ -111,6 +111,10 @@ class Emitter {
         code_.words.push_back(word_of(static_cast<float>(texture.world_to_texture.m[i])));
       for (const float number : texture.numbers)
         code_.words.push_back(word_of(number));
+      if (reads_colors(texture_types()[static_cast<std::size_t>(texture.type)])) {
+        code_.color_words.push_back(code_.words.size());
+        code_.words.push_back(0);
+      }
     }
     end();
   }

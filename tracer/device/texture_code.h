@@ -21,6 +21,7 @@ struct TextureCode {
   std::vector<int> types;                ///< rows of texture_types() used, ascending
   std::vector<std::size_t> op_words;     ///< indices in `words` of texture operations
   std::vector<std::size_t> image_words;  ///< indices in `words` that hold an index of Scene::images
+  std::vector<std::size_t> color_words;  ///< indices in `words` for the offset of colours' rows
   int stack = 1;
 };
 

@@ -6,10 +6,9 @@
 #include "tracer/kernels/batch.cl"
 #include "tracer/kernels/camera.h"
 #include "tracer/kernels/film.cl"
-#include "tracer/kernels/guide.h"
 #include "tracer/kernels/hits.cl"
+#include "tracer/kernels/leaving.h"
 #include "tracer/kernels/ray_counts.h"
-#include "tracer/kernels/shade.h"
 #include "tracer/kernels/tied_lanes.cl"
 
 /// Pairs of dimensions a sample uses: two for the camera, then k_pairs_vertex at each path vertex.
@@ -48,28 +47,6 @@ typedef struct {
   LightTables lights;
   DS_GLOBAL float* guide;
 } SceneTables;
-
-/// How a path may leave a surface point: by its material's BSDF, and where that is dull by the
-/// guide as well.
-typedef struct {
-  Frame frame;
-  Viewer viewer;
-#ifdef DS_GUIDED
-  Guide guide;
-#endif
-} Leaving;
-
-/// Density of a direction that the BSDF samples with this one.
-DS_FN real leaving_pdf(const Leaving* l, real3 wi, real bsdf_pdf) {
-#ifdef DS_GUIDED
-  if (any_lane(l->guide.there)) {
-    const real both =
-        fma(guide_pdf(&l->guide, wi), (real)(k_guide_share), (1.0f - k_guide_share) * bsdf_pdf);
-    return choose(l->guide.there, both, bsdf_pdf);
-  }
-#endif
-  return bsdf_pdf;
-}
 
 /// Starts the next sample in the lanes of `start`.
 DS_FN void start_paths(Paths* paths, mask start, const Pixels* pixels, const ViewData* view) {
@@ -146,7 +123,8 @@ DS_FN Candidate choose(mask m, Candidate a, Candidate b) {
 
 DS_FN Candidate light_candidate(const LightSample* light, const Paths* paths, mask active,
                                 const Surface* s, const MaterialPoint* m, const Leaving* l) {
-  const BsdfValue bsdf = evaluate_material(m, l->viewer, to_local(l->frame, light->wi));
+  const mask faces = active & (light->pdf > 0.0f) & (dot(light->wi, s->normal) > 0.0f);
+  const BsdfValue bsdf = leaving_value(m, l, to_local(l->frame, light->wi), faces);
   const real other = leaving_pdf(l, light->wi, bsdf.pdf);
   const real mis = choose(light->dirac, (real)(1.0f), power_heuristic(light->pdf, other));
   const real3 arriving = scale(light->radiance, mis / greater(light->pdf, (real)(1e-30f)));
@@ -156,8 +134,7 @@ DS_FN Candidate light_candidate(const LightSample* light, const Paths* paths, ma
   c.bounded = light->bounded;
   c.covered = light->covered;
   c.direct = mul(mul(paths->throughput, bsdf.value), arriving);
-  const mask reaches = active & (light->pdf > 0.0f) & (max_component(c.direct) > 0.0f) &
-                       (dot(light->wi, s->normal) > 0.0f);
+  const mask reaches = faces & (max_component(c.direct) > 0.0f);
   const real sum = c.direct.x + c.direct.y + c.direct.z;
   c.weight = choose(reaches, lesser(sum, (real)(1e30f)), (real)(0.0f));
   return c;

@@ -20,4 +20,7 @@
   X("scale", scale, SCALE)                            \
   X("mix", mix_texture, MIX_TEXTURE)                  \
   X("add", add, ADD)                                  \
-  X("subtract", subtract, SUBTRACT)
+  X("subtract", subtract, SUBTRACT)                   \
+  X("hitpointcolor", hitpointcolor, HITPOINTCOLOR)    \
+  X("hitpointgrey", hitpointgrey, HITPOINTGREY)       \
+  X("hitpointalpha", hitpointalpha, HITPOINTALPHA)

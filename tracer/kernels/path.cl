@@ -13,33 +13,6 @@ DS_FN mask is_last(const Paths* paths, const ViewData* view) {
          (paths->glossy > view->depth_glossy) | (paths->specular > view->depth_specular);
 }
 
-#ifdef DS_GUIDED
-/// Turns the samples of a share of the lanes towards the guide's spheres, and weighs all by the
-/// density of both ways.
-DS_FN void guide_samples(BsdfSample* b, real3* wi, const MaterialPoint* m, const Leaving* l,
-                         real choice, real2 u) {
-  const mask there = l->guide.there;
-  const mask turned = there & (choice < k_guide_share);
-  const real3 towards = guide_sample(&l->guide, choice * (1.0f / k_guide_share), u);
-  const real3 turned_wi = to_local(l->frame, towards);
-  const BsdfValue value = evaluate_material(m, l->viewer, turned_wi);
-  const real3 f = choose(turned, value.value, scale(b->weight, b->pdf));
-  const real bsdf_pdf = choose(turned, value.pdf, b->pdf);
-  *wi = choose(turned, towards, *wi);
-  b->wi = choose(turned, turned_wi, b->wi);
-  const real pdf = leaving_pdf(l, *wi, bsdf_pdf);
-  const mask dirac = b->specular & !turned;
-  const real3 weight = choose(dirac, scale(b->weight, 1.0f / (1.0f - k_guide_share)),
-                              scale(f, 1.0f / greater(pdf, (real)(1e-30f))));
-  b->weight = choose(there, weight, b->weight);
-  b->pdf = choose(there & !dirac, pdf, b->pdf);
-  b->valid = choose_mask(turned, value.pdf > 0.0f, b->valid);
-  b->specular = b->specular & !turned;
-  b->glossy = b->glossy & !turned;
-  b->eta_scale = choose(turned, (real)(1.0f), b->eta_scale);
-}
-#endif
-
 /// Continues the paths by a BSDF sample, or along the guide; returns the lanes whose path ends
 /// here.
 DS_FN mask scatter(Paths* paths, mask active, const Surface* s, const MaterialPoint* m,
@@ -48,15 +21,15 @@ DS_FN mask scatter(Paths* paths, mask active, const Surface* s, const MaterialPo
   const real guide_choice = lobe.y;
   lobe.y = (real)(0.0f);
   const real2 u = sample_pair(sampler, pair + (uint)k_pair_direction);
-  BsdfSample b = sample_material(m, l->viewer, u, lobe);
+  BsdfSample b;
+  mask up = sample_leaving(m, l, u, lobe, active, &b);
   real3 wi = to_world(l->frame, b.wi);
 #ifdef DS_GUIDED
-  if (any_lane(active & l->guide.there)) guide_samples(&b, &wi, m, l, guide_choice, u);
+  if (any_lane(active & l->guide.there)) guide_samples(&b, &wi, &up, m, l, active, guide_choice, u);
 #endif
-  // A sampled direction must leave on the side its lobe is on, also by the true surface: light does
-  // not leak through.
+  // Along the surface rounding may have taken a direction to the other side.
   const real true_side = dot(wi, s->normal);
-  const mask leaks = choose(b.wi.z > 0.0f, true_side, -true_side) <= 0.0f;
+  const mask leaks = choose(up, true_side, -true_side) <= 0.0f;
   const real3 throughput = mul(paths->throughput, b.weight);
   const real eta_scale = paths->eta_scale * b.eta_scale;
   const mask plays = paths->vertices >= view->roulette_depth;
@@ -184,7 +157,8 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
     load_triangles(t->triangles, &found, &hits);
     ties.flags = bits_of(hit_word(&hits, k_triangle_flags));
   }
-  const Surface s = surface_of(&hits, paths->origin, paths->direction);
+  Surface s = surface_of(&hits, paths->origin, paths->direction);
+  s.colors = *(const natural*)found.id + 1u;  // 0, the white row, where nothing was met
   const real3 wo = negate(paths->direction);
 #ifdef DS_CAMERA_INVISIBLE
   const mask passes =
@@ -223,6 +197,7 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
 #endif
   Leaving leaving;
   leaving.frame = frame_around(s.shading);
+  leaving.normal = to_local(leaving.frame, s.normal);
   leaving.viewer.wo = to_local(leaving.frame, wo);
   leaving.viewer.wo.z = greater(leaving.viewer.wo.z, (real)(1e-3f));
   leaving.viewer.outside = s.outside;

@@ -38,6 +38,9 @@ DS_FN void read_material(MaterialTables t, natural material, mask active, const 
   at.position = s->position;
   at.u = s->u;
   at.v = s->v;
+  at.b1 = s->b1;
+  at.b2 = s->b2;
+  at.colors = s->colors;
   mask left = active & (program != k_none);
   while (any_lane(left)) {
     const uint code = first_of(left, program);

@@ -11,6 +11,8 @@ typedef struct {
                    ///< the viewer
   real3 error;     ///< bound of the position's rounding error, by component
   real u, v;
+  real b1, b2;     ///< weights of the triangle's second and third corner
+  natural colors;  ///< its row of colours (hit_colors.h)
   mask outside;  ///< the triangle's own normal (counter-clockwise corners) is on the viewer's side
 } Surface;
 
@@ -52,7 +54,7 @@ typedef struct {
 } Corners;
 
 /// The surface at the weights b1 and b2 of the second and third corner, seen along `wo` (unit, to
-/// the viewer). u and v are left at 0.
+/// the viewer). u, v and colors are left at 0.
 DS_FN Surface surface_at(const Corners* c, real b1, real b2, real3 wo) {
   const real3 p0 = c->position[0];
   const real3 e1 = sub(c->position[1], p0);
@@ -72,5 +74,8 @@ DS_FN Surface surface_at(const Corners* c, real b1, real b2, real3 wo) {
   const real3 smooth = choose(dot(interpolated, interpolated) > 1e-6f, unit(interpolated), own);
   s.shading = facing_normal(scale(smooth, side), wo);
   s.u = s.v = (real)(0.0f);
+  s.b1 = b1;
+  s.b2 = b2;
+  s.colors = (natural)(0u);
   return s;
 }

@@ -19,5 +19,7 @@
 typedef struct {
   real3 position;           ///< in the texture's own space (3D mappings)
   real u, v;                ///< after the texture's mapping (2D mappings)
-  DS_GLOBAL float* tables;  ///< texels
+  real b1, b2;              ///< weights of the triangle's second and third corner
+  natural colors;           ///< the triangle's row of colours
+  DS_GLOBAL float* tables;  ///< texels and rows of colours
 } TexturePoint;

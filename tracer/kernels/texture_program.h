@@ -28,6 +28,8 @@ enum { k_instruction_head = 2, k_instruction_transform = 12 };
 typedef struct {
   real3 position;  ///< world
   real u, v;
+  real b1, b2;
+  natural colors;
 } SurfacePoint;
 
 DS_FN TexturePoint texture_point(SurfacePoint at, DS_GLOBAL float* t, DS_GLOBAL float* tables) {
@@ -41,6 +43,9 @@ DS_FN TexturePoint texture_point(SurfacePoint at, DS_GLOBAL float* t, DS_GLOBAL 
               fma(at.position.y, (real)(t[9]), fma(at.position.z, (real)(t[10]), (real)(t[11])))));
   p.u = fma(at.u, (real)(t[0]), fma(at.v, (real)(t[1]), (real)(t[2])));
   p.v = fma(at.u, (real)(t[3]), fma(at.v, (real)(t[4]), (real)(t[5])));
+  p.b1 = at.b1;
+  p.b2 = at.b2;
+  p.colors = at.colors;
   p.tables = tables;
   return p;
 }

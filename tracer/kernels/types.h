@@ -84,6 +84,10 @@ enum {
   k_tie_rank_shift = 16,  ///< 16 bits: its object's rank; the least lies on top
   k_most_tie_rank = 0xffff,
 
+  // A row of colours in `tables`: red, green, blue and alpha of a triangle's three corners. The
+  // first row is white, then comes one for each triangle.
+  k_color_words = 12,
+
   // A row of materials: a head, then the inputs.
   k_material_type = 0,
   k_material_program = 1,   ///< offset in programs of what evaluates textured inputs, or k_none

@@ -40,6 +40,10 @@ DS_FN real3 add_scaled(real3 a, real3 b, real s) {
 DS_FN real dot(real3 a, real3 b) {
   return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
 }
+/// `v` mirrored on the plane of `normal` (unit).
+DS_FN real3 mirror_image(real3 v, real3 normal) {
+  return add_scaled(v, normal, -2.0f * dot(v, normal));
+}
 DS_FN real3 cross(real3 a, real3 b) {
   return vec(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }

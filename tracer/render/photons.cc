@@ -244,11 +244,12 @@ class PhotonTracer {
       const kernels::BsdfSample b = sample_shiny(material->prefix, material->inputs.data(), viewer,
                                                  sample_pair(s, pair), lobe);
       if (!b.valid || !(b.glossy || b.specular)) continue;
-      const real3 wi = unit(to_world(frame, b.wi));
-      const float side = dot(wi, at.normal);
+      // Mirrored on the true plane where that lets it leave on its lobe's side (leaving.h).
+      const real3 sampled = unit(to_world(frame, b.wi));
+      const bool crosses = (b.wi.z > 0) != (dot(sampled, at.normal) > 0);
+      const real3 wi = crosses ? mirror_image(sampled, at.normal) : sampled;
       flight.power *= luminance(b.weight);
-      if ((b.wi.z > 0) != (side > 0) || !(flight.power > 0) || !std::isfinite(flight.power))
-        continue;
+      if (!(flight.power > 0) || !std::isfinite(flight.power)) continue;
       flight.source = at.position;
       flight.from = negate(wi);
       gone.push_back(flight);

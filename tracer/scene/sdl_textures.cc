@@ -109,6 +109,11 @@ void read_imagemap(const SdlNode& node) {
   add_texture(node, std::move(texture));
 }
 
+void read_hit_color(const SdlNode& node) {
+  node.number("dataindex");
+  read_plain(node);
+}
+
 void read_solid(const SdlNode& node) {
   Texture texture;
   read_header(node, texture);
@@ -156,6 +161,11 @@ std::vector<SdlParameter> solid_parameters() {
            "applied to the world's point: a scale of 4 makes a pattern four times as fine"}};
 }
 
+std::vector<SdlParameter> color_parameters() {
+  return {
+      {"dataindex", SdlType::number, "0", "there is one set of colours", {.least = 0, .most = 0}}};
+}
+
 /// How a texture is read that is no plain kernel header, and what it has beyond one.
 struct TextureReader {
   SdlTypeRow row;  ///< the help of those with a kernel header is there
@@ -169,6 +179,9 @@ const std::vector<TextureReader>& readers() {
       {{"checkerboard3d", "", solid_parameters()}, read_solid},
       {{"marble", "", solid_parameters()}, read_solid},
       {{"fbm", "", solid_parameters()}, read_solid},
+      {{"hitpointcolor", "", color_parameters()}, read_hit_color},
+      {{"hitpointgrey", "", color_parameters()}, read_hit_color},
+      {{"hitpointalpha", "", color_parameters()}, read_hit_color},
       {{"constfloat1", "A number.", {{"value", SdlType::scalar_input, "1", "a constant"}}},
        read_constant},
       {{"constfloat3", "A colour.", {{"value", SdlType::color_input, "1", "a constant"}}},

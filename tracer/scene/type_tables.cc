@@ -77,6 +77,7 @@ InputLimit limit_of(std::string_view name) {
       {"uroughness", k_share},
       {"vroughness", k_share},
       {"amount", k_share},
+      {"channel", {.least = -1, .most = 2}},
       {"octaves", {.least = 0, .most = 32}},  // a sample pays for each
       {"multibounce", k_share, true},
       {"doublesided", k_share, true},
@@ -106,6 +107,9 @@ std::string header_comment(std::string_view folder, const NodeType& type) {
 
 bool reads_uvs(const NodeType& texture) {
   return texture.name == "imagemap";
+}
+bool reads_colors(const NodeType& texture) {
+  return texture.name.starts_with("hitpoint");
 }
 
 std::span<const NodeType> material_types() {

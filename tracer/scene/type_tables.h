@@ -40,8 +40,9 @@ struct NodeType {
   std::span<const NumberType> numbers;
 };
 
-/// Whether a texture of this type reads uv.
+/// Whether a texture of this type reads uv, and whether it reads the mesh's colours.
 bool reads_uvs(const NodeType& texture);
+bool reads_colors(const NodeType& texture);
 
 /// In the order of tracer/kernels/lists.h; Material::type and Texture::type index them.
 std::span<const NodeType> material_types();

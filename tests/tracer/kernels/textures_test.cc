@@ -30,13 +30,26 @@ namespace {
 using namespace kernels;
 
 TexturePoint at(float x, float y, float z) {
-  return {vec(x, y, z), 0, 0, nullptr};
+  TexturePoint point{};
+  point.position = vec(x, y, z);
+  return point;
 }
+
+/// The origin, of the second row of colours below.
+SurfacePoint origin() {
+  return {vec(0, 0, 0), 0, 0, 0.25f, 0.625f, 1};
+}
+
+/// A row of white, and one of r g b a at three corners.
+const std::vector<float> k_colors = {1,    1, 1,     1, 1, 1,    1,     1,    1, 1,     1,     1,
+                                     0.5f, 0, 0.25f, 1, 1, 0.5f, 0.25f, 0.5f, 0, 0.25f, 0.75f, 0};
 
 /// The first input of material 0 at a point, by its texture program.
 real3 run(const Scene& scene, SurfacePoint where) {
   const TextureCode code = texture_code(scene, scene.materials[0]);
-  std::vector<float> words, tables;
+  // The rows of colours do not stand first: their offset is asked for.
+  std::vector<float> words, tables{-7};
+  tables.insert(tables.end(), k_colors.begin(), k_colors.end());
   std::vector<std::uint32_t> offsets;
   for (const Image& image : scene.images) {
     offsets.push_back(static_cast<std::uint32_t>(tables.size()));
@@ -45,6 +58,8 @@ real3 run(const Scene& scene, SurfacePoint where) {
   std::vector<std::uint32_t> raw = code.words;
   for (const std::size_t i : code.image_words)
     raw[i] = offsets[raw[i]];
+  for (const std::size_t i : code.color_words)
+    raw[i] = 1;
   for (const std::uint32_t word : raw)
     words.push_back(std::bit_cast<float>(word));
   float inputs[64] = {-1, -1, -1, -1};
@@ -56,7 +71,7 @@ real3 run(const Scene& scene, SurfacePoint where) {
 /// A matte material whose kd is a graph; `add(scene)` makes its textures and returns the last one's
 /// index.
 template <typename Add>
-real3 value_of(const Add& add, SurfacePoint where = {vec(0, 0, 0), 0, 0}) {
+real3 value_of(const Add& add, SurfacePoint where = origin()) {
   Scene scene;
   pictures::add_material(scene, "matte");
   scene.materials[0].inputs[0] = {{}, add(scene)};
@@ -103,6 +118,36 @@ TEST(TextureProgram, Arithmetic) {
   expect_color(mix(-7), a);
 }
 
+TEST(TextureProgram, ColorsOfTheMesh) {
+  // Corners weigh 1/8, 1/4 and 5/8.
+  const Vec3 mixed{0.0625f + 0.25f, 0.125f + 0.15625f, 0.03125f + 0.0625f + 0.46875f};
+  const float alpha = 0.125f + 0.125f;
+  const auto grey = [&](float channel, SurfacePoint where) {
+    return value_of(
+        [&](Scene& s) {
+          const int index = pictures::add_texture(s, "hitpointgrey", {});
+          s.textures.back().numbers = {channel};
+          return index;
+        },
+        where);
+  };
+  const auto plain = [&](std::string_view type, SurfacePoint where) {
+    return value_of([&](Scene& s) { return pictures::add_texture(s, type, {}); }, where);
+  };
+  expect_color(plain("hitpointcolor", origin()), mixed);
+  expect_color(plain("hitpointalpha", origin()), {alpha, alpha, alpha});
+  expect_color(grey(0, origin()), {mixed.x, mixed.x, mixed.x});
+  expect_color(grey(1, origin()), {mixed.y, mixed.y, mixed.y});
+  expect_color(grey(2, origin()), {mixed.z, mixed.z, mixed.z});
+  // LuxCore's weights of luminance.
+  const float light = 0.212671f * mixed.x + 0.715160f * mixed.y + 0.072169f * mixed.z;
+  expect_color(grey(-1, origin()), {light, light, light});
+  SurfacePoint white = origin();
+  white.colors = 0;
+  for (const char* type : {"hitpointcolor", "hitpointgrey", "hitpointalpha"})
+    expect_color(plain(type, white), {1, 1, 1});
+}
+
 TEST(TextureProgram, Graph) {
   // (a + b) * (a - b) + a, where the same texture stands in two places.
   const Vec3 a{3, 5, 0.5f}, b{1, 2, 4};
@@ -122,8 +167,9 @@ TEST(TextureProgram, EveryTextureLeavesOneValue) {
   for (const NodeType& type : texture_types()) {
     Scene scene;
     Image image;
-    image.width = image.height = 1;
-    image.rgb = {0.25f, 0.5f, 0.75f};
+    image.width = 4;  // as long as a row of colours
+    image.height = 1;
+    image.rgb.assign(k_color_words, 0.25f);
     scene.images.push_back(image);
     pictures::add_material(scene, "glossy2");
     // Two inputs, so that a value left over or missing would shift the second.
@@ -138,14 +184,15 @@ TEST(TextureProgram, EveryTextureLeavesOneValue) {
     for (const std::uint32_t word : raw)
       words.push_back(std::bit_cast<float>(word));
     float inputs[64] = {};
-    run_texture_program(words.data(), image.rgb.data(), {vec(0.1f, 0.2f, 0.3f), 0.4f, 0.6f}, true,
-                        inputs);
+    run_texture_program(words.data(), image.rgb.data(),
+                        {vec(0.1f, 0.2f, 0.3f), 0.4f, 0.6f, 0, 0, 0}, true, inputs);
     EXPECT_TRUE(std::isfinite(inputs[0])) << type.name;
     expect_color(vec(inputs[3], inputs[4], inputs[5]), {1, 2, 3});
     EXPECT_LE(code.stack, 2 + static_cast<int>(type.inputs.size())) << type.name;
     // Where the lane is not meant, nothing is written.
     float untouched[64] = {};
-    run_texture_program(words.data(), image.rgb.data(), {vec(0, 0, 0), 0, 0}, false, untouched);
+    run_texture_program(words.data(), image.rgb.data(), {vec(0, 0, 0), 0, 0, 0, 0, 0}, false,
+                        untouched);
     EXPECT_EQ(untouched[3], 0);
   }
 }
@@ -163,7 +210,7 @@ TEST(TextureProgram, WhatIsUsedTwiceIsEvaluatedOnce) {
   scene.materials[0].inputs[0] = {{}, last};
   const TextureCode code = texture_code(scene, scene.materials[0]);
   EXPECT_EQ(code.op_words.size(), 21u);
-  expect_color(run(scene, {vec(0, 0, 0), 0, 0}), {1048576, 2 * 1048576, 3 * 1048576});
+  expect_color(run(scene, {vec(0, 0, 0), 0, 0, 0, 0, 0}), {1048576, 2 * 1048576, 3 * 1048576});
 }
 
 TEST(TextureProgram, TooDeepAGraphIsAnError) {
@@ -207,7 +254,7 @@ TEST(Checkerboard, TheMappingIsApplied) {
                      Mat4{{10, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
                  return index;
                },
-               {vec(p.x, p.y, p.z), 0, 0})
+               {vec(p.x, p.y, p.z), 0, 0, 0, 0, 0})
         .x;
   };
   EXPECT_EQ(value({0, 0.5f, 0.5f}), 1);
@@ -297,7 +344,7 @@ TEST(Marble, TheTurningPointsOfTheSineAreInsideItsColours) {
 TEST(Fbm, IsNoiseForOneOctave) {
   const float numbers[] = {1, 0.5f};
   const real3 p = vec(1.3f, -2.4f, 0.8f);
-  EXPECT_EQ(fbm_evaluate({p, 0, 0, nullptr}, numbers, nullptr).x, gradient_noise(p));
+  EXPECT_EQ(fbm_evaluate(at(p.x, p.y, p.z), numbers, nullptr).x, gradient_noise(p));
 }
 
 /// A 3 x 2 image of red values 0 .. 5, top row first.
@@ -314,7 +361,7 @@ float texel(ImageWrap wrap, ImageFilter filter, float u, float v) {
                s.images.push_back(image);
                return pictures::add_texture(s, "imagemap", {});
              },
-             {vec(0, 0, 0), u, v})
+             {vec(0, 0, 0), u, v, 0, 0, 0})
       .x;
 }
 
@@ -375,7 +422,7 @@ TEST(Imagemap, TheMappingIsApplied) {
                            std::begin(s.textures.back().uv_transform));
                  return index;
                },
-               {vec(0, 0, 0), 0.1f, 0.9f})
+               {vec(0, 0, 0), 0.1f, 0.9f, 0, 0, 0})
         .x;
   }();
   EXPECT_EQ(value, 2);

@@ -36,6 +36,41 @@ Geometry geometry_of(const Scene& scene, const Camera& camera = from_the_front()
   return tracer.trace_geometry(camera, k_width, k_height);
 }
 
+/// A panel before the camera, under a sky of 1, whose matte colour is its mesh's; pixel by pixel.
+Film panel_film(const std::vector<MeshColor>& colors) {
+  pictures::Picture p;
+  const int texture = pictures::add_texture(p.scene, "hitpointcolor", {});
+  const int material = pictures::add_material(p.scene, "matte");
+  p.scene.materials.back().inputs[0] = {{}, texture};
+  Mesh mesh = pictures::quad({0, 0, 0}, {2, 0, 0}, {0, 0, 2});
+  mesh.colors = colors;
+  pictures::add_object(p.scene, std::move(mesh), material);
+  p.scene.lights = {pictures::constant_light({1, 1, 1})};
+  p.camera = from_the_front();
+  p.engine.width = k_width;
+  p.engine.height = k_height;
+  p.engine.spp = 4;
+  return pictures::trace(p);
+}
+
+TEST(MeshColors, AreWhatTheTextureShows) {
+  // A matte surface that sees a sky of 1 alone shines with its albedo.
+  const Film even = panel_film(std::vector<MeshColor>(4, {0.25f, 0.5f, 0.75f, 1}));
+  const Film none = panel_film({});
+  // Red grows from the left corners to the right ones.
+  const Film grows = panel_film({{0, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}, {0, 0, 0, 1}});
+  for (int row = 0; row < k_height; ++row)
+    for (int column = 0; column < k_width; ++column) {
+      const auto i = static_cast<std::size_t>(row * k_width + column) * 3;
+      ASSERT_NEAR(even.rgb[i], 0.25f, 1e-5f);
+      ASSERT_NEAR(even.rgb[i + 1], 0.5f, 1e-5f);
+      ASSERT_NEAR(even.rgb[i + 2], 0.75f, 1e-5f);
+      ASSERT_NEAR(none.rgb[i], 1.0f, 1e-5f);
+      const double x = direction(column, row).x * 3;
+      ASSERT_NEAR(double{grows.rgb[i]}, (x + 2) / 4, 0.03) << column;
+    }
+}
+
 TEST(Geometry, ABoxIsMaskedAndDeepAsItsFront) {
   Scene scene;
   const int grey = pictures::add_matte(scene, {0.5f, 0.5f, 0.5f});

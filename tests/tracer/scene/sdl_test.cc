@@ -176,6 +176,20 @@ TEST(SdlTexture, MappingsAreLuxCores) {
   EXPECT_EQ(solid.textures.at(0).world_to_texture.point({1, 1, 1}), (Vec3d{5, 6, 7}));
 }
 
+TEST(SdlTexture, ColoursOfMeshesAreRead) {
+  const SdlFolder folder;
+  const Scene scene = folder.material(
+      "scene.textures.t.type = hitpointgrey\nscene.textures.t.channel = 1\n"
+      "scene.textures.u.type = hitpointcolor\nscene.textures.u.dataindex = 0\n"
+      "scene.materials.a.kd = u\nscene.materials.b.kd = t\nscene.materials.m.type = mix\n"
+      "scene.materials.m.material1 = a\nscene.materials.m.material2 = b\n"
+      "scene.materials.m.amount = w\nscene.textures.w.type = hitpointalpha\n");
+  EXPECT_EQ(scene.textures.size(), 3u);
+  EXPECT_EQ(folder.material_error("scene.textures.t.type = hitpointcolor\n"
+                                  "scene.textures.t.dataindex = 1\nscene.materials.a.kd = t\n"),
+            "m.scn:2: scene.textures.t.dataindex: wanted a number in [0, 0], found \"1\"");
+}
+
 TEST(SdlTexture, OneFileReadTheSameWayIsOneImage) {
   const SdlFolder folder;
   folder.write("a.png", "bytes");
