@@ -16,6 +16,8 @@ namespace ds {
 ///   models_absent    models that the class files list and that have no file
 ///   models_unlisted  model files that no class file lists, where there is one
 ///   classes_empty    classes of the class files, and classes above them, that no image is of
+///   assets_unphysical  material files and environments with a surface that gives back more light
+///                    than it gets, or another value that no real surface has
 struct Concern {
   std::string name;
   std::uint64_t count = 0;            ///< 0: none

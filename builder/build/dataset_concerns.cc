@@ -69,12 +69,13 @@ PixelCounts count_file(const std::filesystem::path& file, const std::string& kin
 
 }  // namespace
 
-std::vector<Concern> dataset_concerns(const Recipe& recipe,
+std::vector<Concern> dataset_concerns(const Recipe& recipe, const Concern& unphysical,
                                       const std::vector<ImageRecord>& images) {
   std::vector<Concern> concerns = no_concerns();
   for (const ImageRecord& image : images)
     look_at_image(concerns, image);
   look_at_labels(concerns, recipe, images);
+  concern(concerns, "assets_unphysical") = unphysical;
   return concerns;
 }
 

@@ -69,7 +69,7 @@ ImageRecord image_record(const PlannedImage& image, Database& database) {
   return record;
 }
 
-DatasetRecord dataset_record(const Recipe& recipe, const std::map<std::string, MendedModel>& mended,
+DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
                              const std::vector<ImageRecord>& images) {
   DatasetRecord record;
   record.name = recipe.name;
@@ -88,7 +88,7 @@ DatasetRecord dataset_record(const Recipe& recipe, const std::map<std::string, M
   record.counts = {{"images", images.size()}, {"models", models.size()}};
   for (const auto& [split, count] : splits)
     record.counts.emplace_back(split, count);
-  for (const auto& [model, what] : mended)
+  for (const auto& [model, what] : plan.mended)
     if (models.contains(model)) record.mended_models.emplace_back(model, what.damage);
   std::vector<std::pair<std::string, std::string>> texts;
   const auto add_licences = [&](const char* kind,
@@ -100,7 +100,7 @@ DatasetRecord dataset_record(const Recipe& recipe, const std::map<std::string, M
   add_licences("materials", recipe.materials);
   add_licences("environments", recipe.environments);
   record.licences = group_licences(texts);
-  record.concerns = dataset_concerns(recipe, images);
+  record.concerns = dataset_concerns(recipe, plan.unphysical, images);
   return record;
 }
 

@@ -18,8 +18,8 @@ std::string program_version();
 /// does not know one.
 ImageRecord image_record(const PlannedImage& image, Database& database);
 
-/// What the manifest says of the dataset as a whole, for the images it lists. `mended`: Plan's.
-DatasetRecord dataset_record(const Recipe& recipe, const std::map<std::string, MendedModel>& mended,
+/// What the manifest says of the dataset as a whole, for the images it lists.
+DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
                              const std::vector<ImageRecord>& images);
 
 }  // namespace ds

@@ -338,7 +338,7 @@ void Execution::write_manifest(const ListedImages& images, ManifestSources sourc
   find_capped(images);
   const std::size_t made = records.size();
   add_older_records(records, dataset_, images.lacking, cut_short(), placed);
-  DatasetRecord record = dataset_record(dataset_.recipe, plan_.mended, records);
+  DatasetRecord record = dataset_record(dataset_.recipe, plan_, records);
   if (records.size() > made)
     record.counts.emplace_back("of_an_earlier_build", records.size() - made);
   result_.concerns = record.concerns;

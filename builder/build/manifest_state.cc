@@ -40,7 +40,7 @@ constexpr Label k_labels[] = {
 
 /// dataset.json but for what counts the images.
 DatasetRecord description(const Recipe& recipe, const Plan& plan) {
-  DatasetRecord record = dataset_record(recipe, {}, {});
+  DatasetRecord record = dataset_record(recipe, plan, {});
   for (const auto& [model, what] : plan.mended)
     record.mended_models.emplace_back(model, what.damage);
   return record;
@@ -184,7 +184,7 @@ void compare_concerns(std::vector<Concern> before, std::vector<Concern> after,
     behind.emplace_back("concerns: not counted by the version that wrote it");
     return;
   }
-  for (const char* name : {"models_absent", "models_unlisted"}) {
+  for (const char* name : {"models_absent", "models_unlisted", "assets_unphysical"}) {
     const std::uint64_t old_count = concern(before, name).count;
     const std::uint64_t new_count = concern(after, name).count;
     if (old_count != new_count)

@@ -7,9 +7,13 @@
 #include "builder/build/placed_files.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <set>
 
 namespace ds {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// Reasons named in full; what follows is counted.
 constexpr std::size_t k_most_changes = 4;
@@ -88,7 +92,8 @@ void Planner::add_changes(PlannedImage& image, const PartHashes& before) {
     image.reasons.push_back(
         fmt::format("{} changed: {}", changes[i].first, to_string(changes[i].second)));
   if (changes.size() > k_most_changes)
-    image.reasons.push_back(fmt::format("and {} more changes", changes.size() - k_most_changes));
+    image.reasons.push_back(fmt::format("and {} more change{}", changes.size() - k_most_changes,
+                                        changes.size() == k_most_changes + 1 ? "" : "s"));
 }
 
 /// The kept film that tracing can go on from.
@@ -170,6 +175,29 @@ void check_names(const std::vector<OutputFile>& outputs) {
   }
 }
 
+/// Counts the files, whose findings were said when they were read.
+Concern count_unphysical(const std::vector<PlannedImage>& images, Inputs& inputs) {
+  Concern concern{"assets_unphysical", 0, 0, {}};
+  std::set<const void*> seen;  // the files' paths are long, and images many
+  std::set<std::string> files;
+  const auto look = [&](const Shared<fs::path>& asset, const auto& read) {
+    if (!seen.insert(asset.identity()).second || !files.insert(asset->native()).second) return;
+    const Scene& scene = read();
+    ++concern.of;
+    if (std::any_of(scene.materials.begin(), scene.materials.end(),
+                    [](const Material& material) { return !material.unphysical.empty(); }))
+      add_example(concern, asset->filename().string());
+  };
+  for (const PlannedImage& image : images) {
+    if (image.error) continue;
+    const ImageSpec& spec = image.spec;
+    look(spec.material_file, [&]() -> const Scene& { return inputs.material(spec.material_file); });
+    look(spec.environment_folder,
+         [&]() -> const Scene& { return inputs.environment(spec.environment_folder); });
+  }
+  return concern;
+}
+
 }  // namespace
 
 std::uint64_t PlannedImage::samples() const {
@@ -226,6 +254,7 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
   plan.placed = planner.placed();
   plan.to_remove = plan.placed->left_over(plan.images, shard);
   plan.forgets = planner.forgets();
+  plan.unphysical = count_unphysical(plan.images, inputs);
   snapshot.reset();
   plan.manifest = manifest_state(dataset, plan, *plan.placed);
   inputs.remember();

@@ -7,6 +7,7 @@
 #include "builder/build/shard.h"
 #include "builder/build/texts.h"
 #include "builder/recipe/recipe.h"
+#include "manifests/concerns.h"
 
 #include <filesystem>
 #include <map>
@@ -80,6 +81,7 @@ struct Plan {
   std::shared_ptr<PlacedFiles> placed;        ///< as the plan found them; refers to the dataset
   std::int64_t data_version = 0;              ///< Database::data_version before anything was read
   std::map<std::string, MendedModel> mended;  ///< by model name, of all shards' images
+  Concern unphysical;  ///< of the materials and environments of all shards' images
 };
 
 /// `force`: every image of the shard is traced again. `inputs` must outlive what is executed of the

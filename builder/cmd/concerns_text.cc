@@ -27,6 +27,7 @@ constexpr ConcernText k_texts[] = {
      "classes.missing = \"ignore\""},
     {"models_unlisted", "model files stand in no class file", "classes.unlisted = \"keep\""},
     {"classes_empty", "classes have no image", "classes.missing = \"ignore\""},
+    {"assets_unphysical", "materials and environments have values that no real surface has"},
 };
 
 const ConcernText& text_of(const Concern& concern) {
@@ -76,7 +77,7 @@ std::size_t tell_concerns(const std::vector<Concern>& concerns, const Recipe& re
     } else if (strict) {
       ++errors;
       say(Stream::people, "dsbuild: error: {}{} (--strict)\n", to_text(concern), way_out(concern));
-    } else {
+    } else if (concern.name != "assets_unphysical") {  // said, value by value, where they were read
       warn(to_text(concern) + way_out(concern));
     }
   }

@@ -26,11 +26,13 @@ ImageRecord image(const std::string& id, const PixelCounts& counts) {
   return record;
 }
 
+const Concern k_physical{"assets_unphysical", 0, 3, {}};
+
 using Counts = std::map<std::string, std::uint64_t>;
 
 TEST(DatasetConcernsTest, each_image_is_judged_by_its_pixels) {
   const auto of = [](const PixelCounts& pixels) {
-    return counts(dataset_concerns({}, {image("a", pixels)}));
+    return counts(dataset_concerns({}, k_physical, {image("a", pixels)}));
   };
   EXPECT_EQ(of({10000, 0, 5000, 0}), Counts{});
   EXPECT_EQ(of({10000, 0, 0, 0}), (Counts{{"mask_empty", 1}}));
@@ -49,7 +51,7 @@ TEST(DatasetConcernsTest, they_are_counted_of_those_looked_at_with_a_few_names) 
   for (const char* id : {"a", "b", "c", "d", "e"})
     images.push_back(image(id, {{}, {}, 0, 0}));
   images.push_back(image("no-mask", {10000, 0, {}, {}}));
-  std::vector<Concern> concerns = dataset_concerns({}, images);
+  std::vector<Concern> concerns = dataset_concerns({}, k_physical, images);
   EXPECT_EQ(concern(concerns, "mask_empty"), (Concern{"mask_empty", 5, 5, {"a", "b", "c"}}));
   EXPECT_EQ(concern(concerns, "picture_black"), (Concern{"picture_black", 0, 1, {}}));
 }
@@ -59,7 +61,7 @@ TEST(DatasetConcernsTest, a_class_has_the_images_of_those_below_it) {
   recipe.class_paths = {"animal", "vehicle", "vehicle/car", "vehicle/car/van", "vehicle/plane"};
   std::vector<ImageRecord> images{image("a", {})};
   images[0].class_path = "vehicle/car/van";
-  std::vector<Concern> concerns = dataset_concerns(recipe, images);
+  std::vector<Concern> concerns = dataset_concerns(recipe, k_physical, images);
   EXPECT_EQ(concern(concerns, "classes_empty"),
             (Concern{"classes_empty", 2, 5, {"animal", "vehicle/plane"}}));
 }

@@ -7,7 +7,7 @@ import zlib
 from harness import IMAGES, TinyCase, main
 
 NONE = {name: 0 for name in ("mask_empty", "mask_at_frame", "mask_small", "picture_black", "picture_white",
-                             "models_absent", "models_unlisted", "classes_empty")}
+                             "models_absent", "models_unlisted", "classes_empty", "assets_unphysical")}
 
 
 def grey_png(path):
@@ -93,6 +93,23 @@ class ConcernsTest(TinyCase):
         concerns, err = self.concerns()
         self.assertEqual(concerns, {**NONE, "models_absent": 3, "models_unlisted": 1, "classes_empty": 1})
         self.assertIn("3 of 4 models that the class files list have no file: far, gone, lost", err)
+    def test_surfaces_that_make_light(self):
+        self.edit("materials/red.mat", "0.7 0.1 0.1", "255 0 0")
+        wanted = ("materials/red.mat:3: scene.materials.red.kd: wanted numbers in [0, 1], found 255 0 0: "
+                  "it gives back more light than it gets\n")
+        concerns, err = self.concerns()
+        self.assertEqual(concerns["assets_unphysical"], 1)
+        self.assertEqual(err.count("red.kd"), 1, err)
+        self.assertIn(wanted, err)
+        self.assertIn("dsbuild: warning: ", err[:err.index("red.kd")].splitlines()[-1])
+        described = json.loads((self.out / "manifest/dataset.json").read_text())["concerns"]["assets_unphysical"]
+        self.assertEqual(described, {"count": 1, "of": 4, "examples": ["red.mat"]})
+        # Said again by a build with nothing to do, and beforehand.
+        self.assertEqual(self.concerns()[0], concerns)
+        self.assertIn(wanted, self.run_it("plan", self.recipe, "-o", self.out).err)
+        _, err = self.concerns("--strict", code=1)
+        self.assertIn("dsbuild: error: 1 of 4 materials and environments have values that no real surface has: red.mat", err)
+
         self.assertIn("1 of 2 model files stand in no class file: tetra.ply", err)
         self.assertIn("1 of 3 classes have no image: ship", err)
         self.concerns("--strict", code=1)

@@ -68,6 +68,9 @@ struct Material {
   /// Emitted radiance, W/(m^2 sr), all of LuxCore's gains applied. From the front only: the side on
   /// which the triangle's corners run counter-clockwise. As LuxCore.
   TextureRef emission;
+  /// A line for each input out of its physical range ("m.mat:3: ...kd: wanted ..."). No part of any
+  /// key.
+  std::vector<std::string> unphysical;
 };
 
 enum class LightKind { point, spot, sun, constant_infinite, infinite };

@@ -32,7 +32,9 @@ Scene read_material(const std::filesystem::path& file) {
   if (diagnostics.empty() && reader.scene.materials.empty())
     diagnostics.add({file.string()}, "wanted a material, found no scene.materials");
   diagnostics.throw_if_any();
-  return prune_to_last_material(std::move(reader.scene));
+  Scene material = prune_to_last_material(std::move(reader.scene));
+  warn_of_materials(material);
+  return material;
 }
 
 Scene read_environment(const std::filesystem::path& folder) {
@@ -62,6 +64,7 @@ Scene read_environment(const std::filesystem::path& folder) {
   report_unused(film, k_film, "a film file");
   diagnostics.throw_if_any();
   Scene environment = prune_environment(std::move(reader.scene));
+  warn_of_materials(environment);
   warn_of_environment(environment, folder.string());
   return environment;
 }

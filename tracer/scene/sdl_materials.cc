@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/scene/fresnel_presets.h"
 #include "tracer/scene/sdl_math.h"
+#include "tracer/scene/sdl_physical.h"
 #include "tracer/scene/sdl_reader.h"
 
 #include <algorithm>
@@ -33,6 +34,9 @@ void finish_metal2(const SdlNode& node, Material& material) {
     node.miss_reference("fresnel", SdlKind::texture, *fresnel, node.reader().conductors);
     return;
   }
+  if (const auto what = node.reader().unphysical_conductors.find(*fresnel);
+      what != node.reader().unphysical_conductors.end())
+    material.unphysical.push_back(what->second);
   set_input(material, "n", found->second.n);
   set_input(material, "k", found->second.k);
 }
@@ -161,6 +165,8 @@ void read_material_node(SdlNode node) {
   DS_ASSERT(material.type >= 0);
   node.read_row(material_types()[static_cast<std::size_t>(material.type)], material.inputs,
                 material.numbers);
+  material.unphysical = find_unphysical(
+      node, material_types()[static_cast<std::size_t>(material.type)], material.inputs);
   for (const Finish& finish : finishes())
     if (finish.type == type) finish.finish(node, material);
   const int index = static_cast<int>(reader.scene.materials.size());

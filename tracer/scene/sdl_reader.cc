@@ -334,12 +334,18 @@ void SdlNode::read_row(const NodeType& row, std::vector<TextureRef>& inputs,
                          : static_cast<float>(number(type.name)));
 }
 
+std::string physical_text(const InputLimit& limit) {
+  const std::string range = limit.physical.text();
+  return range.empty() ? "" : fmt::format("a share of light, {}; what is not is warned of", range);
+}
+
 std::vector<SdlParameter> header_parameters(const NodeType& type) {
   std::vector<SdlParameter> parameters;
   for (const InputType& input : type.inputs)
     parameters.push_back({std::string(input.name),
                           input.width == 1 ? SdlType::scalar_input : SdlType::color_input,
-                          fmt::format("{}", input.default_value), "", limit_of(input.name).range});
+                          fmt::format("{}", input.default_value),
+                          physical_text(limit_of(input.name)), limit_of(input.name).range});
   for (const NumberType& number : type.numbers) {
     const InputLimit limit = limit_of(number.name);
     parameters.push_back({std::string(number.name), limit.flag ? SdlType::flag : SdlType::number,

@@ -45,7 +45,9 @@ struct SdlReader {
 
   std::map<std::string, TextureRef> textures;        ///< constants are folded
   std::map<std::string, ConductorIndex> conductors;  ///< fresnel* textures
-  std::map<std::string, int> materials;              ///< index into scene.materials
+  std::map<std::string, std::string>
+      unphysical_conductors;             ///< what is to be said where one is used
+  std::map<std::string, int> materials;  ///< index into scene.materials
   std::map<std::string, FileMesh> shapes;
   std::map<int, PowerEmission> power_emissions;  ///< by material
   bool environment = false;                      ///< objects and lights may stand in the file
@@ -176,6 +178,8 @@ Vec3d temperature_factor(const SdlNode& node, std::string_view property);
 /// What temperature_factor takes.
 std::vector<SdlParameter> temperature_parameters(const std::string& property);
 
+/// What a reference says of an input's physical range; "" where it has none.
+std::string physical_text(const InputLimit& limit);
 /// The properties of a type of material or texture that stand in its kernel header.
 std::vector<SdlParameter> header_parameters(const NodeType& type);
 /// The lists, one behind the other.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/scene/fresnel_presets.h"
 #include "tracer/scene/sdl_math.h"
+#include "tracer/scene/sdl_physical.h"
 #include "tracer/scene/sdl_reader.h"
 
 #include <algorithm>
@@ -122,7 +123,10 @@ void read_solid(const SdlNode& node) {
 }
 
 void read_fresnel_color(const SdlNode& node) {
-  node.reader().conductors[node.name()] = fresnel_color(constant_color(node, "kr", 0.5f));
+  const Vec3 kr = constant_color(node, "kr", 0.5f);
+  if (auto line = find_unphysical(node, "kr", {kr, -1}))
+    node.reader().unphysical_conductors[node.name()] = std::move(*line);
+  node.reader().conductors[node.name()] = fresnel_color(kr);
 }
 
 void read_fresnel_const(const SdlNode& node) {
@@ -192,7 +196,8 @@ const std::vector<TextureReader>& readers() {
        read_fresnel_preset},
       {{"fresnelcolor",
         "A metal of that colour at normal incidence, for metal2's fresnel.",
-        {{"kr", SdlType::color_input, "0.5", "a constant", k_not_negative}}},
+        {{"kr", SdlType::color_input, "0.5", "a constant; " + physical_text(limit_of("kr")),
+          k_not_negative}}},
        read_fresnel_color},
       {{"fresnelconst",
         "A metal's refractive index as numbers, for metal2's fresnel.",

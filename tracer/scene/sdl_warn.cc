@@ -54,6 +54,12 @@ class Search {
 
 }  // namespace
 
+void warn_of_materials(const Scene& scene) {
+  for (const Material& material : scene.materials)
+    for (const std::string& line : material.unphysical)
+      warn(line);
+}
+
 void warn_of_environment(const Scene& environment, const std::string& name) {
   if (!gives_light(environment)) warn(fmt::format("{}: nothing in it gives light", name));
   const Search uvs(environment, reads_uvs);

@@ -63,10 +63,10 @@ InputLimit limit_of(std::string_view name) {
   constexpr NumberRange k_not_negative{.least = 0};
   constexpr NumberRange k_share{.least = 0, .most = 1};
   static constexpr InputLimit k_limits[] = {
-      {"kd", k_not_negative},
-      {"ks", k_not_negative},
-      {"kr", k_not_negative},
-      {"kt", k_not_negative},
+      {"kd", k_not_negative, false, k_share},
+      {"ks", k_not_negative, false, k_share},
+      {"kr", k_not_negative, false, k_share},
+      {"kt", k_not_negative, false, k_share},
       {"ka", k_not_negative},
       {"d", k_not_negative},
       {"index", k_not_negative},

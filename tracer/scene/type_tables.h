@@ -13,7 +13,8 @@ namespace ds {
 struct InputLimit {
   std::string_view name;
   NumberRange range{};
-  bool flag = false;  ///< 0 or 1
+  bool flag = false;       ///< 0 or 1
+  NumberRange physical{};  ///< a share of light: what is outside of it is read, and warned of
 };
 InputLimit limit_of(std::string_view name);
 
