@@ -188,8 +188,10 @@ class WorkingFolder {
     std::error_code error;
     fs::current_path(folder, error);
     if (error)
-      fail(ErrorKind::io, "{}: the folder the dataset was built from: {}", folder.string(),
-           error.message());
+      fail(ErrorKind::io,
+           "{}: the folder the dataset was built from, where the paths of its --set start: {}; put "
+           "it back, or build the recipe again with -o and --set",
+           folder.string(), error.message());
   }
   ~WorkingFolder() {
     std::error_code ignored;
@@ -228,21 +230,49 @@ Pointer enter_folder(const Dataset& dataset, const DatasetRequest& request, Poin
   return pointer;
 }
 
+/// Throws where the recipe of a folder is no longer there.
+void check_recipe_is_there(const fs::path& folder, const fs::path& recipe) {
+  std::error_code error;
+  if (fs::exists(recipe, error)) return;
+  fail(ErrorKind::recipe,
+       "{0}: was built from the recipe {1}, which is no longer there; put it back, or hand the "
+       "folder "
+       "over to it where it is now: dsbuild build RECIPE -o {0} --adopt (verify and log need no "
+       "recipe)",
+       folder.string(), recipe.string());
+}
+
+/// For a folder that no build wrote: the recipe in it, or beside it and of its name, that may have
+/// been meant.
+std::string recipe_meant(const fs::path& folder) {
+  std::error_code error;
+  const fs::path beside = folder.string() + ".toml";
+  if (fs::is_regular_file(beside, error)) return fmt::format(", did you mean {}?", beside.string());
+  std::vector<fs::path> recipes;
+  for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator();
+       entry.increment(error))
+    if (entry->path().extension() == ".toml") recipes.push_back(entry->path());
+  return recipes.size() == 1 ? fmt::format(", did you mean {}?", recipes.front().string()) : "";
+}
+
 Dataset open_folder(const DatasetRequest& request, Access access, Disk& disk) {
   if (!request.overrides.empty())
-    fail(ErrorKind::usage, "--set needs a recipe, found the folder {}", request.target.string());
+    fail(ErrorKind::usage,
+         "--set needs a recipe, found the folder {}, which keeps the settings it was built with",
+         request.target.string());
   if (!request.output_folder.empty())
     fail(ErrorKind::usage, "-o needs a recipe, found the folder {}", request.target.string());
   Dataset dataset;
   dataset.folder = normal(request.target);
   const std::optional<Pointer> pointer = read_pointer(dataset.folder);
   if (!pointer)
-    fail(ErrorKind::usage, "{}: wanted a recipe or a folder that dsbuild built",
-         request.target.string());
+    fail(ErrorKind::usage, "{}: wanted a recipe or a folder that dsbuild built{}",
+         request.target.string(), recipe_meant(dataset.folder));
   std::error_code error;
   if (!fs::is_directory(pointer->store, error))
-    fail(ErrorKind::io, "{}: its store {} is not there", dataset.folder.string(),
-         pointer->store.string());
+    fail(ErrorKind::io,
+         "{}: its store {} is not there; put it back, or build the recipe with -o and --store",
+         dataset.folder.string(), pointer->store.string());
   open_store(dataset, pointer->store, disk);
   const std::optional<DatasetRow> row = dataset.database->find_dataset(pointer->id);
   if (!row)
@@ -252,6 +282,7 @@ Dataset open_folder(const DatasetRequest& request, Access access, Disk& disk) {
   if (access == Access::records) return dataset;
   const fs::path place = place_of(dataset.folder);
   dataset.row.recipe = moved(row->recipe, *pointer, place);
+  check_recipe_is_there(dataset.folder, dataset.row.recipe);
   std::optional<WorkingFolder> working_folder;
   if (!row->overrides.empty()) {
     if (dataset.row.recipe != row->recipe)
@@ -312,6 +343,11 @@ std::optional<fs::path> recipe_left_behind(const fs::path& folder) {
   if (pointer->folder == place) return std::nullopt;
   if (moved(pointer->recipe, *pointer, place) != pointer->recipe) return std::nullopt;
   return pointer->recipe;
+}
+
+bool has_lost_state(const fs::path& folder) {
+  std::error_code error;
+  return fs::exists(folder / "manifest", error) && !fs::exists(pointer_path(folder), error);
 }
 
 std::optional<fs::path> enclosing_dataset(const fs::path& path) {

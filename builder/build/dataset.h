@@ -60,6 +60,9 @@ std::filesystem::path dataset_folder(const DatasetRequest& request);
 /// and the recipe did not move with it: a copy, which is not to be as the recipe wants it now.
 std::optional<std::filesystem::path> recipe_left_behind(const std::filesystem::path& folder);
 
+/// Whether a dataset's manifest lies there without the `.dsbuild` that a build puts beside it.
+bool has_lost_state(const std::filesystem::path& folder);
+
 /// The folder above `path` that a build wrote, and nothing where there is none.
 std::optional<std::filesystem::path> enclosing_dataset(const std::filesystem::path& path);
 

@@ -227,8 +227,11 @@ void verify_against_plan(VerifyResult& result, Dataset& dataset, const Plan& pla
       result.findings.push_back({Finding::Kind::manifest, id, image.error->what()});
     else if (record->second.render_key != image.keys.render ||
              record->second.files_key != image.keys.files)
-      result.findings.push_back(
-          {Finding::Kind::manifest, id, "it is of an older recipe or older assets"});
+      result.findings.push_back({Finding::Kind::manifest, id,
+                                 image.stale()
+                                     ? fmt::format("it is of an older recipe or older assets: {}",
+                                                   fmt::join(image.reasons, "; "))
+                                     : "it is of an older recipe or older assets"});
   }
   for (const auto& [id, record] : records)
     if (!wanted.contains(id))

@@ -15,6 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+using Changes = std::vector<std::pair<std::string, PropertyChange>>;
+
 /// Lines shown of a long value that differs (the text of the traced program).
 constexpr std::size_t k_most_lines = 40;
 
@@ -33,6 +35,22 @@ DatasetRequest request_of(const Arguments& arguments, std::string& image) {
   return request;
 }
 
+/// The id that a file's path, or a name without the folder of its model's, may have meant: "m110.off/0"
+/// for "m110/0", "images/m110.off/0.png", "0".
+std::string meant_id(const std::string& wanted, const std::vector<std::string_view>& ids) {
+  const fs::path path(wanted);
+  const std::string model = path.parent_path().filename().string(), file = path.filename().string();
+  const std::string view = file.substr(0, file.find('.'));  // "0.mask.png"
+  for (const std::string_view id : ids) {
+    const fs::path known(id);
+    const std::string known_model = known.parent_path().string();
+    if (known.filename() == view && !model.empty() &&
+        (known_model == model || fs::path(known_model).stem() == model))
+      return std::string(id);
+  }
+  return "";
+}
+
 const PlannedImage& find_image(const Plan& plan, const Dataset& dataset,
                                const std::string& wanted) {
   // An absolute path stays; a relative one may be so to the current folder or to the dataset's.
@@ -47,10 +65,49 @@ const PlannedImage& find_image(const Plan& plan, const Dataset& dataset,
   std::vector<std::string_view> ids;
   for (const PlannedImage& image : plan.images)
     ids.emplace_back(image.spec.id);
-  const std::string known = known_words(wanted, ids);
+  const std::string meant = meant_id(wanted, ids);
+  const std::string known =
+      meant.empty() ? known_words(wanted, ids) : fmt::format(", did you mean {}?", meant);
   fail(
       ErrorKind::usage, "{}: the dataset has no such image{}", wanted,
       known.empty() ? fmt::format("; its first is {}", ids.empty() ? "none" : ids.front()) : known);
+}
+
+/// A material or environment that the image had when it was made, and the one that it has now.
+struct Assigned {
+  std::string name, before, after;
+};
+
+/// As the manifest tells it; nothing where that is not of the image as the database knows it.
+std::vector<Assigned> assigned_since(const PlannedImage& image, const PartHashes& known,
+                                     const fs::path& folder) {
+  std::vector<Assigned> changes;
+  try {
+    for (const ImageRecord& record : read_images_manifest(folder)) {
+      if (record.id != image.spec.id) continue;
+      if (!std::equal(record.parts.begin(), record.parts.end(), known.begin())) return {};
+      const auto compare = [&](const char* name, const std::string& before,
+                               const std::string& after) {
+        if (before != after) changes.push_back({name, before, after});
+      };
+      compare("material", record.material, *image.spec.material_name);
+      compare("environment", record.environment, *image.spec.environment_name);
+    }
+  } catch (const Error&) {  // without a manifest nothing is known of names
+  }
+  return changes;
+}
+
+/// Whether a change follows from another material or environment: its properties, the program that
+/// traces them, and the tone map that an environment brings.
+bool follows(const std::pair<std::string, PropertyChange>& change,
+             const std::vector<Assigned>& assigned) {
+  return std::any_of(assigned.begin(), assigned.end(), [&](const Assigned& one) {
+    return change.first == one.name ||
+           (change.first == "engine" && change.second.name == "program") ||
+           (one.name == "environment" &&
+            (change.first == "files" || change.second.name.starts_with("schedule.")));
+  });
 }
 
 nlohmann::json to_json(const std::string& part, const PropertyChange& change) {
@@ -70,8 +127,7 @@ void print_long_value(const PropertyChange& change, const TextLookup& find) {
     say(Stream::result, "    {}\n", line);
 }
 
-void print_changes(const std::vector<std::pair<std::string, PropertyChange>>& changes,
-                   const TextLookup& find) {
+void print_changes(const Changes& changes, const TextLookup& find) {
   for (const auto& [part, change] : changes) {
     say(Stream::result, "  {}: {}\n", part, to_string(change));
     print_long_value(change, find);
@@ -79,8 +135,7 @@ void print_changes(const std::vector<std::pair<std::string, PropertyChange>>& ch
 }
 
 /// ": forced; ...": the reasons that are not among the changes, which are told line by line.
-std::string other_reasons(const PlannedImage& image,
-                          const std::vector<std::pair<std::string, PropertyChange>>& changes) {
+std::string other_reasons(const PlannedImage& image, const Changes& changes) {
   std::string text;
   for (const std::string& reason : image.reasons) {
     const bool told = std::any_of(changes.begin(), changes.end(), [&](const auto& change) {
@@ -104,11 +159,14 @@ int run_explain(const Arguments& arguments) {
   const PlannedImage& image = find_image(plan, dataset, wanted);
   if (image.error) throw *image.error;
 
-  std::vector<std::pair<std::string, PropertyChange>> changes;
+  Changes changes;
+  std::vector<Assigned> assigned;
   const auto images = dataset.database->images(dataset.row.id);
   const auto before = images.find(image.spec.id);
-  if (before != images.end())
+  if (before != images.end()) {
     changes = changes_since(image, before->second, plan.texts, *dataset.database);
+    if (!changes.empty()) assigned = assigned_since(image, before->second, dataset.folder);
+  }
   const TextLookup find = [&](Hash128 hash) -> std::optional<std::string> {
     if (const std::string* text = plan.texts.find(hash)) return *text;
     return dataset.database->find_text(hash);
@@ -118,7 +176,11 @@ int run_explain(const Arguments& arguments) {
                           {"step", step_of(image)},
                           {"reasons", image.reasons},
                           {"render_key", image.keys.render.hex()},
+                          {"assigned", nlohmann::json::array()},
                           {"changes", nlohmann::json::array()}};
+    for (const Assigned& one : assigned)
+      object["assigned"].push_back(
+          {{"name", one.name}, {"before", one.before}, {"after", one.after}});
     for (std::size_t i = 0; i < k_part_count; ++i)
       object["parts"][k_part_names[i]] = image.keys.parts[i].hex();
     for (const auto& [part, change] : changes)
@@ -132,6 +194,9 @@ int run_explain(const Arguments& arguments) {
     say(Stream::result, "{}: {}{}\n", image.spec.id, step_of(image), other_reasons(image, changes));
   else
     say(Stream::result, "{}: up to date\n", image.spec.id);
+  for (const Assigned& one : assigned)
+    say(Stream::result, "  {}: {} -> {}\n", one.name, one.before, one.after);
+  std::erase_if(changes, [&](const auto& change) { return follows(change, assigned); });
   print_changes(changes, find);
   say(Stream::result, "render key {}\n", image.keys.render.hex());
   for (std::size_t i = 0; i < k_part_count; ++i)

@@ -7,6 +7,18 @@
 
 namespace ds {
 
+namespace {
+
+/// A folder that was moved is not looked for.
+std::string why_never(const Dataset& dataset) {
+  if (has_lost_state(dataset.folder))
+    return "unknown: a manifest lies there without its .dsbuild, which belongs to it";
+  return fmt::format("never in this folder; if it was moved: dsbuild status {} -o FOLDER",
+                     dataset.recipe.file.string());
+}
+
+}  // namespace
+
 int run_status(const Arguments& arguments) {
   RealDisk disk;
   Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
@@ -30,7 +42,7 @@ int run_status(const Arguments& arguments) {
       dataset.recipe.file.string(), dataset.folder.string());
   if (!store.empty()) say(Stream::result, "store    {}\n", store);
   if (builds.empty())
-    say(Stream::result, "build    never\n");
+    say(Stream::result, "build    {}\n", why_never(dataset));
   else
     say(Stream::result, "build    {} UTC, {}, {} built, {}\n", builds.front().started_at,
         builds.front().outcome, builds.front().built, format_duration(builds.front().seconds));

@@ -95,6 +95,33 @@ class FolderTest(TinyCase):
         run = self.at(other, "verify", "deep/tiny")
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
 
+    def test_a_recipe_that_is_gone_is_named(self):
+        self.build()
+        moved = self.tiny / "elsewhere.toml"
+        os.rename(self.recipe, moved)
+        for verb in (["build"], ["build", "-n"], ["status"], ["plan"], ["models"], ["explain"]):
+            run = self.run_it(*verb, self.out, *(["box.off/0"] if verb == ["explain"] else []))
+            self.assertEqual((run.code, run.err.count("dsbuild: error: "), run.out), (2, 1, ""), run)
+            self.assertIn(f"{self.out}: was built from the recipe {self.recipe}, which is no longer there", run.err)
+            self.assertIn(f"dsbuild build RECIPE -o {self.out} --adopt", run.err)
+        self.assertEqual(self.run_it("verify", self.out).code, 0)
+        self.assertEqual(self.run_it("log", self.out).code, 0)
+        # What it says to do does it.
+        self.assert_counts(self.run_it("build", moved, "-o", self.out, "--adopt", "--json",
+                                       "--set", "dataset.name=tiny").json, reused=IMAGES)
+        self.assertEqual(self.run_it("status", self.out).code, 0)
+
+    def test_a_folder_that_was_moved_is_asked_for(self):
+        self.at(self.tiny, "build", "recipe.toml")
+        os.rename(self.tiny / "out/tiny", self.folder / "elsewhere")
+        said = self.at(self.tiny, "status", "recipe.toml").stdout
+        self.assertIn(f"never in this folder; if it was moved: dsbuild status {self.tiny}/recipe.toml -o FOLDER", said)
+        said = self.at(self.tiny, "status", "recipe.toml", "-o", self.folder / "elsewhere").stdout
+        self.assertIn(f"{IMAGES} up to date", said)
+        shutil.rmtree(self.folder / "elsewhere/.dsbuild")
+        said = self.at(self.tiny, "status", "recipe.toml", "-o", self.folder / "elsewhere").stdout
+        self.assertIn("a manifest lies there without its .dsbuild", said)
+
     def test_files_that_no_build_made_are_not_written_over(self):
         for name in ("images/box.off/0.png", "manifest/dataset.json"):
             mine = self.folder / "mine" / name

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is behind although no file looks newer: content under an unchanged stamp."""
+import json
 import os
 import shutil
 
@@ -43,6 +44,35 @@ class StaleTest(TinyCase):
         for verb in ("build", "status", "plan"):
             run = self.run_it(verb, self.recipe, "-o", self.out, "--rehash", "--json")
             self.assertEqual(run.code, 0, run)
+
+    def test_another_assignment_is_explained_as_one(self):
+        self.build()
+        before = {line["id"]: line for line in map(json.loads, (self.out / "manifest/images.jsonl").read_text().splitlines())}
+        (self.tiny / "materials/amber.mat").write_text(
+            "scene.materials.amber.type = glossy2\nscene.materials.amber.kd = 0.9 0.5 0.1\n")
+        after = {one["id"]: one for one in self.run_it("plan", self.recipe, "-o", self.out, "--json").json["stale_images"]}
+        self.assertGreater(len(after), 0)
+        for image in after:
+            run = self.run_it("explain", self.out, image)
+            self.assertEqual(run.code, 0, run)
+            lines = run.out.splitlines()
+            self.assertEqual(lines[0], f"{image}: trace")
+            self.assertRegex(lines[1], rf"^  material: {before[image]['material']} -> \w+$")
+            self.assertTrue(lines[2].startswith("render key "), run)
+            told = self.run_it("explain", self.out, image, "--json").json
+            self.assertEqual(told["assigned"], [{"name": "material", "before": before[image]["material"],
+                                                 "after": lines[1].split()[-1]}])
+            self.assertIn("material", {change["part"] for change in told["changes"]})
+        # verify says what is behind.
+        run = self.run_it("verify", self.out)
+        self.assertEqual(run.code, 1, run)
+        self.assertRegex(run.out, r"manifest: \S+: it is of an older recipe or older assets: material changed: ")
+        # What changes beside the assignment is told too.
+        (self.tiny / "materials/amber.mat").unlink()
+        (self.tiny / "materials/green.mat").rename(self.tiny / "materials/zinc.mat")
+        image = next(id for id, line in before.items() if line["material"] == "green")
+        run = self.run_it("explain", self.recipe, image, "-o", self.out, "--set", "engine.spp=4")
+        self.assertRegex(run.out, r"  material: green -> \w+\n  engine: spp: 1 -> 4\nrender key ")
 
     def test_labels_are_stale_without_any_picture(self):
         self.build("--set", "classes.split={test=1.0}")
