@@ -83,6 +83,7 @@ struct Listing {
   std::vector<fs::path> found;                ///< what belongs
   std::map<std::string, std::size_t> others;  ///< files that do not, by ending
   std::size_t dead_links = 0;
+  std::size_t specials = 0;        ///< pipes, sockets, devices: of whatever ending
   std::size_t unread_folders = 0;  ///< that hold what would belong
 };
 
@@ -132,6 +133,8 @@ class FolderWalk {
         ++listing_.dead_links;
       else if (fs::is_directory(path, ignored))
         enter(path, error);
+      else if (!fs::is_regular_file(path, ignored))
+        ++listing_.specials;
       else if (!is_remark(path))
         ++listing_.others[path.extension().string()];
       if (error) return;
@@ -175,11 +178,17 @@ std::string unused_text(const Listing& listing, const AssetKind& kind) {
     parts.push_back(fmt::format("{} file{} of other endings ({}); .ply and .off are read", count,
                                 count == 1 ? "" : "s", fmt::join(endings, ", ")));
   }
+  if (listing.specials > 0)
+    parts.push_back(fmt::format("{} that {} (a pipe, socket or device)", listing.specials,
+                                listing.specials == 1 ? "is no file" : "are no files"));
   if (listing.dead_links > 0)
-    parts.push_back(fmt::format("{} links that lead nowhere", listing.dead_links));
+    parts.push_back(fmt::format("{} link{} nowhere", listing.dead_links,
+                                listing.dead_links == 1 ? " that leads" : "s that lead"));
   if (listing.unread_folders > 0)
-    parts.push_back(fmt::format("{} folders that hold models; models.recursive = true reads them",
-                                listing.unread_folders));
+    parts.push_back(fmt::format("{} folder{} models; models.recursive = true reads {}",
+                                listing.unread_folders,
+                                listing.unread_folders == 1 ? " that holds" : "s that hold",
+                                listing.unread_folders == 1 ? "it" : "them"));
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 

@@ -66,10 +66,14 @@ Camera fit_camera(Camera camera, const CameraFit& fit, const Sphere& sphere, int
   if (fit.focus == CameraFit::Focus::distance) return camera;
   const Vec3d sharp = fit.focus == CameraFit::Focus::target ? camera.target : Vec3d{};
   camera.focus_distance_m = dot(sharp - camera.position, sight);
-  if (!(camera.focus_distance_m > 0))
-    fail(ErrorKind::recipe,
-         "camera.focus must be in front of every camera, got {} m with camera.distance_m = \"fit\"",
-         camera.focus_distance_m);
+  if (camera.focus_distance_m > 0) return camera;
+  if (camera.lens_radius_m > 0)
+    fail(
+        ErrorKind::recipe,
+        "camera.focus must be in front of every camera, got {} m with camera.distance_m = \"fit\"; "
+        "\"target\" always is",
+        camera.focus_distance_m);
+  camera.focus_distance_m = distance_m;  // a pinhole is sharp everywhere: any distance does
   return camera;
 }
 

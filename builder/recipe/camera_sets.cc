@@ -2,6 +2,7 @@
 #include "builder/recipe/camera_sets.h"
 
 #include "manifests/camera_geometry.h"
+#include "tracer/base/log.h"
 
 #include <cmath>
 #include <set>
@@ -118,10 +119,28 @@ bool aim(const Settings& settings, const std::string& name, Camera& camera) {
   const Vec3d sharp = focus == "target" ? camera.target : Vec3d{};
   camera.focus_distance_m = dot(sharp - camera.position, forward);
   if (camera.focus_distance_m > 0) return true;
-  settings.complain("camera.focus",
-                    fmt::format("must be in front of every camera, got {} m for view {}",
-                                camera.focus_distance_m, name));
+  if (camera.lens_radius_m == 0) {  // sharp everywhere: any distance does
+    camera.focus_distance_m = length(camera.target - camera.position);
+    return true;
+  }
+  settings.complain(
+      "camera.focus",
+      fmt::format("must be in front of every camera, got {} m for view {}; \"target\" "
+                  "always is",
+                  camera.focus_distance_m, name));
   return false;
+}
+
+/// Says that a focus is chosen for a pinhole.
+void warn_of_idle_focus(const Settings& settings) {
+  const RecipeValue* focus = settings.find("camera.focus");
+  if (settings.number("camera.lens_radius_m") > 0 || !settings.given("camera.focus") ||
+      settings.text("camera.focus") == "origin")
+    return;
+  warn(
+      fmt::format("{}: camera.focus has no effect with camera.lens_radius_m = 0, a pinhole: all "
+                  "is sharp",
+                  to_string(focus->place)));
 }
 
 }  // namespace
@@ -161,6 +180,7 @@ std::vector<Vec3d> hemisphere(int count, double distance_m, double azimuth_deg) 
 }
 
 CameraViews make_cameras(const Settings& settings) {
+  warn_of_idle_focus(settings);
   if (settings.text("camera.focus") == "distance" && !settings.given("camera.focus_distance_m")) {
     settings.complain("camera.focus_distance_m", "must be given with camera.focus = \"distance\"");
   }

@@ -84,6 +84,9 @@ TEST(CameraFitTest, focus_follows_the_camera) {
   EXPECT_EQ(fit_camera(camera, {0, distance}, sphere, 64, 64).focus_distance_m, 7);
   camera = camera_at({-1, 0, 0}, {0.5, 0, 0});  // between the origin and the target
   camera.fov_deg = 60;
+  EXPECT_NEAR(fit_camera(camera, {0, origin}, sphere, 64, 64).focus_distance_m, 0.2, 1e-12)
+      << "a pinhole is sharp everywhere";
+  camera.lens_radius_m = 0.01;
   EXPECT_THROW(fit_camera(camera, {0, origin}, sphere, 64, 64), Error);
 }
 

@@ -131,6 +131,24 @@ TEST_F(CameraSetsTest, MayBeUsedInPart) {
             "r.toml:4:24: camera.views must name a view once, got 2 again");
 }
 
+TEST_F(CameraSetsTest, APinholeNeedsNoFocus) {
+  const std::string_view k_behind =
+      "camera.set = \"list\"\ncamera.positions = [[1, 0, 0]]\ncamera.target = [3, 0, 0]\n";
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(cameras(k_behind)[0].focus_distance_m, 2);
+  EXPECT_EQ(cameras(std::string(k_behind) + "camera.focus = \"origin\"")[0].focus_distance_m, 2);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              testing::Not(testing::HasSubstr("camera.focus")));
+  testing::internal::CaptureStderr();
+  const std::string chosen =
+      "camera.lens_radius_m = 0\ncamera.focus = \"distance\"\ncamera.focus_distance_m = 7";
+  EXPECT_EQ(cameras(std::string(k_behind) + chosen)[0].focus_distance_m, 7);
+  EXPECT_THAT(
+      testing::internal::GetCapturedStderr(),
+      testing::HasSubstr("r.toml:8:16: camera.focus has no effect with camera.lens_radius_m "
+                         "= 0, a pinhole: all is sharp\n"));
+}
+
 TEST_F(CameraSetsTest, ReportWhatCannotBeSeen) {
   EXPECT_EQ(folder_.findings("camera.set = \"list\""),
             "r.toml: camera.positions must hold a position with camera.set = \"list\"");
@@ -141,9 +159,12 @@ TEST_F(CameraSetsTest, ReportWhatCannotBeSeen) {
             "1000000], got [1, 2]");
   EXPECT_EQ(folder_.findings("camera.set = \"list\"\ncamera.positions = [[0, 0, 0]]"),
             "r.toml: camera.target must not be where a camera stands, got view 0 there");
-  EXPECT_EQ(folder_.findings(
-                "camera.set = \"list\"\ncamera.positions = [[1, 0, 0]]\ncamera.target = [2, 0, 0]"),
-            "r.toml: camera.focus must be in front of every camera, got -1 m for view 0");
+  EXPECT_EQ(
+      folder_.findings(
+          "camera.set = \"list\"\ncamera.positions = [[1, 0, 0]]\ncamera.target = [2, 0, 0]\n"
+          "camera.lens_radius_m = 0.01"),
+      "r.toml: camera.focus must be in front of every camera, got -1 m for view 0; \"target\" "
+      "always is");
   EXPECT_EQ(folder_.findings("camera.focus = \"distance\""),
             "r.toml: camera.focus_distance_m must be given with camera.focus = \"distance\"");
   EXPECT_EQ(folder_.findings("camera.set = \"dodecahedron\"\ncamera.count = 3"),

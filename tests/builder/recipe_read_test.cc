@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 namespace ds {
 namespace {
 
@@ -273,15 +275,29 @@ TEST_F(RecipeReadTest, CountsWhatIsNotUsedOfTheModelsFolder) {
   fs::create_symlink("nowhere.ply", folder_.path() / "models/gone.ply");
   EXPECT_EQ(warnings(folder_, ""),
             "dsbuild: warning: models.dir: not used of models: 3 files of other endings (1 .STL, 2 "
-            ".obj); .ply and .off are read; 1 links that lead nowhere; 1 folders that hold models; "
-            "models.recursive = true reads them\n");
+            ".obj); .ply and .off are read; 1 link that leads nowhere; 1 folder that holds models; "
+            "models.recursive = true reads it\n");
   EXPECT_EQ(warnings(folder_, "models.recursive = true"),
             "dsbuild: warning: models.dir: not used of models: 4 files of other endings (1 .STL, 2 "
-            ".obj, 1 .txt); .ply and .off are read; 1 links that lead nowhere\n");
+            ".obj, 1 .txt); .ply and .off are read; 1 link that leads nowhere\n");
   const RecipeFolder other;
   other.add("deep/a/b.off");
   EXPECT_THAT(other.findings("", {"models.dir=" + (other.path() / "deep").string()}),
-              HasSubstr("found none in deep, but 1 folders that hold models; models.recursive"));
+              HasSubstr("found none in deep, but 1 folder that holds models; models.recursive"));
+}
+
+TEST_F(RecipeReadTest, CountsPipesAndSocketsOfAnyName) {
+  fs::remove(folder_.path() / "models/notes.txt");
+  ASSERT_EQ(::mkfifo((folder_.path() / "models/pipe.off").c_str(), 0600), 0);
+  EXPECT_EQ(
+      warnings(folder_, ""),
+      "dsbuild: warning: models.dir: not used of models: 1 that is no file (a pipe, socket or "
+      "device)\n");
+  ASSERT_EQ(::mkfifo((folder_.path() / "models/README").c_str(), 0600), 0);
+  folder_.add("models/a.obj");
+  EXPECT_EQ(warnings(folder_, ""),
+            "dsbuild: warning: models.dir: not used of models: 1 file of other endings (1 .obj); "
+            ".ply and .off are read; 2 that are no files (a pipe, socket or device)\n");
 }
 
 TEST_F(RecipeReadTest, FollowsLinkedFoldersOnce) {
