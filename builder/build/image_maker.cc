@@ -162,8 +162,7 @@ Product ImageMaker::make_geometry_file(Work& work, const OutputFile& output) {
     work.done.traced = true;
   }
   Product product = product_of(output.key, output.kind);
-  if (output.kind != "mask")
-    return keep(work, std::move(product), encode_depth_exr(*work.geometry), work.geometry_run);
+  // Of a depth too: it is traced with the mask, which the recipe may not ask for.
   const Picture mask = mask_picture(*work.geometry);
   product.pixel_counts = count_mask(mask.pixels, mask.width, mask.height);
   return keep(work, std::move(product), encode_png(mask), work.geometry_run);
@@ -171,6 +170,8 @@ Product ImageMaker::make_geometry_file(Work& work, const OutputFile& output) {
 
 Product ImageMaker::obtain(Work& work, const OutputFile& output) {
   if (!work.force)
+  if (output.kind != "mask")
+    return keep(work, std::move(product), encode_depth_exr(*work.geometry), work.geometry_run);
     if (const auto known = find_whole(output.key)) return *known;
   return output.kind == "image" ? develop_image(work, output) : make_geometry_file(work, output);
 }

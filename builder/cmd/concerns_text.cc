@@ -81,6 +81,13 @@ std::size_t tell_concerns(const std::vector<Concern>& concerns, const Recipe& re
       warn(to_text(concern) + way_out(concern));
     }
   }
+  const auto masks = std::find_if(concerns.begin(), concerns.end(),
+                                  [](const Concern& one) { return one.name == "mask_empty"; });
+  if (masks != concerns.end() && masks->of == 0 && !recipe.outputs.mask)
+    say(Stream::people,
+        "not checked: whether images show their model whole; outputs.mask = true or outputs.depth "
+        "= "
+        "\"exr\" tells it\n");
   return errors;
 }
 

@@ -18,8 +18,8 @@ std::string to_text(const Concern& concern);
 nlohmann::json to_json(const std::vector<Concern>& concerns);
 
 /// Tells those that there are: as warnings, or as errors where they are to be (`strict`); what the
-/// recipe itself allows (classes.missing, classes.unlisted) as plain lines. Returns how many were
-/// told as errors.
+/// recipe itself allows (classes.missing, classes.unlisted) as plain lines; and what cannot be told
+/// without masks. Returns how many were told as errors.
 std::size_t tell_concerns(const std::vector<Concern>& concerns, const Recipe& recipe, bool strict);
 
 }  // namespace ds

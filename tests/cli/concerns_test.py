@@ -63,6 +63,17 @@ class ConcernsTest(TinyCase):
         self.assertIn("dsbuild: error: ", strict)
         self.assertEqual(self.run_it("verify", self.out).code, 0)
 
+    def test_what_is_not_checked_without_masks(self):
+        far = ["--set", "camera.distance_m=1000", "--set", "outputs.mask=false"]
+        concerns, err = self.concerns(*far, "--set", "outputs.depth=false")
+        self.assertEqual(concerns["mask_empty"], 0)
+        self.assertEqual(err.count("not checked: whether images show their model whole; outputs.mask = true"), 1)
+        # Depth is traced with the mask, and so knows.
+        concerns, err = self.concerns(*far, "--set", "outputs.depth=exr")
+        self.assertEqual(concerns["mask_empty"], IMAGES)
+        self.assertNotIn("not checked", err)
+        self.assertIn("images show nothing of their model", err)
+
     def test_cameras_that_cut_off(self):
         concerns, err = self.concerns("--set", "camera.distance_m=0.15")
         touched = 0
@@ -82,17 +93,6 @@ class ConcernsTest(TinyCase):
         self.assertEqual(concerns["picture_black"], IMAGES)
         self.assertIn("pictures are black", err)
 
-    def test_pictures_that_are_all_white(self):
-        concerns, err = self.concerns("--set", "outputs.tone_map=linear", "--set", "outputs.tone_map_scale=1000")
-        self.assertEqual(concerns["picture_white"], IMAGES)
-        self.assertIn("pictures are clipped at white", err)
-
-    def test_classes_that_do_not_fit_the_files(self):
-        (self.tiny / "train.cla").write_text("PSB 1\n3 4\n\nthing 0 0\n\nbox thing 2\nbox\ngone\n\nship 0 2\nfar\nlost\n")
-        self.edit("recipe.toml", "[materials]", '[classes]\ntrain = "train.cla"\n\n[materials]')
-        concerns, err = self.concerns()
-        self.assertEqual(concerns, {**NONE, "models_absent": 3, "models_unlisted": 1, "classes_empty": 1})
-        self.assertIn("3 of 4 models that the class files list have no file: far, gone, lost", err)
     def test_surfaces_that_make_light(self):
         self.edit("materials/red.mat", "0.7 0.1 0.1", "255 0 0")
         wanted = ("materials/red.mat:3: scene.materials.red.kd: wanted numbers in [0, 1], found 255 0 0: "
@@ -110,6 +110,17 @@ class ConcernsTest(TinyCase):
         _, err = self.concerns("--strict", code=1)
         self.assertIn("dsbuild: error: 1 of 4 materials and environments have values that no real surface has: red.mat", err)
 
+    def test_pictures_that_are_all_white(self):
+        concerns, err = self.concerns("--set", "outputs.tone_map=linear", "--set", "outputs.tone_map_scale=1000")
+        self.assertEqual(concerns["picture_white"], IMAGES)
+        self.assertIn("pictures are clipped at white", err)
+
+    def test_classes_that_do_not_fit_the_files(self):
+        (self.tiny / "train.cla").write_text("PSB 1\n3 4\n\nthing 0 0\n\nbox thing 2\nbox\ngone\n\nship 0 2\nfar\nlost\n")
+        self.edit("recipe.toml", "[materials]", '[classes]\ntrain = "train.cla"\n\n[materials]')
+        concerns, err = self.concerns()
+        self.assertEqual(concerns, {**NONE, "models_absent": 3, "models_unlisted": 1, "classes_empty": 1})
+        self.assertIn("3 of 4 models that the class files list have no file: far, gone, lost", err)
         self.assertIn("1 of 2 model files stand in no class file: tetra.ply", err)
         self.assertIn("1 of 3 classes have no image: ship", err)
         self.concerns("--strict", code=1)

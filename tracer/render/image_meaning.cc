@@ -158,6 +158,12 @@ void set_exr(ImageMeaning& meaning, const ExrHeader& header, const DecodedImage&
   if (header.parts > 1 && !by_name)
     fail(ErrorKind::asset, "{}: wanted the channels R, G, B or Y in its first part, found {}", name,
          fmt::join(decoded.channel_names, ", "));
+  const std::string first = without_layer(decoded.channel_names).front();
+  if (meaning.color_channels == 1 && (first == "Z" || first == "ZBack"))
+    fail(ErrorKind::asset,
+         "{}: wanted colours, found the depth channel {} alone, whose distances are "
+         "no light",
+         name, decoded.channel_names.front());
   if (header.parts > 1)
     meaning.unused += fmt::format("{}{} of {} parts", meaning.unused.empty() ? "" : ", ",
                                   header.parts - 1, header.parts);

@@ -176,7 +176,7 @@ TEST_F(Meaning, AFirstPartWithoutColoursIsNoPicture) {
 TEST_F(Meaning, ChannelsAreUsedByTheirNamesOrRefused) {
   ExrFile file;
   file.value = [](const std::string& channel, int, int) {
-    return channel.ends_with('R') || channel == "Y" || channel == "Z" ? 0.5f
+    return channel.ends_with('R') || channel == "Y" || channel == "V" ? 0.5f
            : channel == "A"                                           ? 1.0f
                                                                       : 0.25f;
   };
@@ -186,7 +186,7 @@ TEST_F(Meaning, ChannelsAreUsedByTheirNamesOrRefused) {
   };
   for (const auto& channels : {std::vector<std::string>{"Y"},
                                {"A", "Y"},
-                               {"Z"},
+                               {"V"},
                                {"B", "G", "R"},
                                {"A", "B", "G", "R"},
                                {"v.B", "v.G", "v.R"}}) {
@@ -203,6 +203,9 @@ TEST_F(Meaning, ChannelsAreUsedByTheirNamesOrRefused) {
                                {"d.B", "d.G", "s.R"}})
     EXPECT_THAT(error_of(with(channels)), HasSubstr(channels.back()));
   EXPECT_THAT(error_of(with({"A"})), HasSubstr("found alpha alone"));
+  for (const char* depth : {"Z", "ZBack", "view.Z"})
+    EXPECT_THAT(error_of(with({depth})),
+                HasSubstr(std::string("found the depth channel ") + depth + " alone"));
   testing::internal::CaptureStderr();
   EXPECT_EQ(at(loaded(with({"A", "B", "G", "R", "Z"})), 0, 0), 0.5f);
   EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("1 of 5 channels are not used"));
