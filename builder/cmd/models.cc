@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "builder/cmd/help_text.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/verbs.h"
 #include "builder/recipe/recipe.h"
@@ -7,26 +8,47 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
+#include <string_view>
+
 namespace ds {
 namespace {
 
-void print_header() {
-  say(Stream::result, "{:<24}", "model");
-  for (const MeshReportColumn& column : k_mesh_report_columns)
-    say(Stream::result, " {:>14}", column.name);
-  say(Stream::result, "  stored\n");
+/// What every model has a count of; the others are named where they are not 0.
+constexpr std::array k_always{"vertices", "faces", "triangles_kept"};
+
+bool is_always_shown(const MeshReportColumn& column) {
+  return std::find(k_always.begin(), k_always.end(), std::string_view(column.name)) !=
+         k_always.end();
 }
 
+void print_header() {
+  say(Stream::result, "{:<24} {:>9} {:>9} {:>9}  found\n", "model", "vertices", "faces",
+      "triangles");
+}
+
+/// As narrow as help is: `--json` has every count by its name.
 void print_row(const std::string& name, const MeshReport& report) {
-  say(Stream::result, "{:<24}", name);
-  for (const MeshReportColumn& column : k_mesh_report_columns)
-    say(Stream::result, " {:>14}", report.*column.count);
-  std::vector<std::string_view> stored;
-  if (report.has_normals) stored.emplace_back("normals");
-  if (report.has_uvs) stored.emplace_back("uvs");
-  if (report.has_colors) stored.emplace_back("colours");
-  if (stored.empty()) stored.emplace_back("-");
-  say(Stream::result, "  {}\n", fmt::join(stored, ", "));
+  std::string line = fmt::format("{:<24}", name);
+  std::vector<std::string> found;
+  for (const MeshReportColumn& column : k_mesh_report_columns) {
+    const std::uint64_t count = report.*column.count;
+    if (is_always_shown(column))
+      line += fmt::format(" {:>9}", count);
+    else if (count > 0 && column.count != &MeshReport::triangles)
+      found.push_back(fmt::format("{} {}", count, column.name));
+  }
+  if (report.has_normals) found.emplace_back("normals");
+  if (report.has_uvs) found.emplace_back("uvs");
+  if (report.has_colors) found.emplace_back("colours");
+  constexpr std::size_t k_indent = 56;
+  line += "  ";
+  if (line.size() > k_indent && !found.empty()) line += "\n" + std::string(k_indent, ' ');
+  line += wrap(fmt::format("{}", fmt::join(found, ", ")), k_indent, k_indent);
+  while (line.ends_with(' '))
+    line.pop_back();
+  say(Stream::result, "{}\n", line);
 }
 
 nlohmann::json to_json(const std::string& name, const MeshReport& report) {
@@ -62,7 +84,8 @@ int run_models(const Arguments& arguments) {
   if (arguments.json)
     print_json({{"models", models}, {"failed", failed}});
   else
-    say(Stream::result, "{} models, {} cannot be used\n", recipe.models.size(), failed);
+    say(Stream::result, "{} model{}, {} cannot be used\n", recipe.models.size(),
+        recipe.models.size() == 1 ? "" : "s", failed);
   return failed > 0 ? 1 : 0;
 }
 

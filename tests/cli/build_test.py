@@ -287,7 +287,11 @@ class BuildTest(TinyCase):
         models = {model["model"]: model for model in run.json["models"]}
         self.assertEqual((models["box.off"]["faces"], models["box.off"]["n_gons"]), (6, 6))
         self.assertEqual(models["box.off"]["triangles"], 12)
-        self.assertIn("tetra.ply", self.run_it("models", self.recipe).out)
+        table = self.run_it("models", self.recipe).out
+        self.assertRegex(table, r"(?m)^box.off +8 +6 +12  6 n_gons$")
+        self.assertIn("tetra.ply", table)
+        for line in table.splitlines():
+            self.assertLessEqual(len(line), 80, line)
 
 
 if __name__ == "__main__":
