@@ -108,6 +108,7 @@ class Execution {
   BuildResult result_;
   std::map<std::string, std::vector<std::string>> failures_;  ///< image ids by what went wrong
   bool disk_failed_ = false;
+  std::string no_device_;  ///< why nothing can be traced
   std::int64_t build_number_ = 0;
 };
 
@@ -185,6 +186,10 @@ bool Execution::make_one(const PlannedImage& image) {
     // What it refuses one image it refuses the rest: tracing them would be for nothing.
     disk_failed_ = true;
     fail_image(image, error.what());
+  } catch (
+      const NoDevice& error) {  // said of the build, not of the image that happened to be first
+    ++result_.failed;
+    no_device_ = error.what();
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::cancelled) fail_image(image, error.what());
   }
@@ -212,6 +217,7 @@ void Execution::make_all(Queue queue) {
 }
 
 void Execution::collect_failures() {
+  if (!no_device_.empty()) result_.failures.emplace_back("tracing", no_device_);
   for (const auto& [why, ids] : failures_) {
     const std::string what =
         ids.size() == 1 ? ids.front() : fmt::format("{} images, {} ...", ids.size(), ids.front());

@@ -56,10 +56,15 @@ ImageMaker::ImageMaker(Dataset& dataset, Inputs& inputs, const TextSet& texts, D
 }
 
 Renderer& ImageMaker::renderer() {
-  if (!renderer_) {
+  if (no_device_) throw *no_device_;
+  if (renderer_) return *renderer_;
+  try {
     renderer_ = factory_();
-    renderer_->announce(std::exchange(upcoming_, {}));
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::device) throw;
+    throw no_device_.emplace(error.what());
   }
+  renderer_->announce(std::exchange(upcoming_, {}));
   return *renderer_;
 }
 
@@ -165,13 +170,13 @@ Product ImageMaker::make_geometry_file(Work& work, const OutputFile& output) {
   // Of a depth too: it is traced with the mask, which the recipe may not ask for.
   const Picture mask = mask_picture(*work.geometry);
   product.pixel_counts = count_mask(mask.pixels, mask.width, mask.height);
+  if (output.kind != "mask")
+    return keep(work, std::move(product), encode_depth_exr(*work.geometry), work.geometry_run);
   return keep(work, std::move(product), encode_png(mask), work.geometry_run);
 }
 
 Product ImageMaker::obtain(Work& work, const OutputFile& output) {
   if (!work.force)
-  if (output.kind != "mask")
-    return keep(work, std::move(product), encode_depth_exr(*work.geometry), work.geometry_run);
     if (const auto known = find_whole(output.key)) return *known;
   return output.kind == "image" ? develop_image(work, output) : make_geometry_file(work, output);
 }

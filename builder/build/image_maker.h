@@ -24,6 +24,12 @@ struct ImageWork {
   std::uint64_t samples = 0;  ///< traced now
 };
 
+/// Nothing can be traced, which is no fault of an image.
+class NoDevice : public Error {
+ public:
+  explicit NoDevice(const std::string& why) : Error(ErrorKind::device, why) {}
+};
+
 /// Makes one image at a time: finds what is in the store, traces and develops what is not, records
 /// all of it in one transaction, then puts the files into the dataset's folder. A crash at any
 /// moment leaves nothing that the next plan takes for whole: objects come before the rows that name
@@ -34,7 +40,8 @@ class ImageMaker {
   ImageMaker(Dataset& dataset, Inputs& inputs, const TextSet& texts, Disk& disk,
              RendererFactory factory, Placing placing = Placing::share);
 
-  /// Throws Error for anything that stops this image; another image may go well.
+  /// Throws Error for anything that stops this image; another image may go well. Throws NoDevice for
+  /// an image that is to be traced where nothing can be.
   ImageWork make(const PlannedImage& image, bool force,
                  const std::function<void(const TraceProgress&)>& progress,
                  const std::atomic<bool>& stop);
@@ -78,6 +85,7 @@ class ImageMaker {
   RendererFactory factory_;
   Placing placing_;
   std::unique_ptr<Renderer> renderer_;
+  std::optional<NoDevice> no_device_;  ///< why there is no renderer, once that was tried
   std::vector<PlacedFile> stamped_;
   std::vector<const ImageSpec*> upcoming_;  ///< announced before there was a renderer
 };

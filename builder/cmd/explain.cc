@@ -3,6 +3,7 @@
 #include "builder/cmd/effects_text.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/verbs.h"
+#include "manifests/manifest.h"
 #include "tracer/base/canonical.h"
 #include "tracer/base/nearest.h"
 #include "tracer/base/streams.h"

@@ -92,19 +92,57 @@ std::string recipe_text(const std::string& name) {
 
 constexpr std::string_view k_recipe = "recipe";
 
-std::string topic_text(const std::string& topic, const std::string& name) {
-  if (topic == k_recipe) return recipe_text(name);
+const SdlSection* find_topic(std::string_view topic) {
   for (const SdlSection* section : sdl_sections())
-    if (section->topic == topic) return section_text(*section, name);
+    if (section->topic == topic) return section;
+  return nullptr;
+}
+
+bool is_verb(std::string_view name) {
+  return std::any_of(verbs().begin(), verbs().end(),
+                     [&](const Verb& verb) { return verb.name == name; });
+}
+
+/// Of a topic that is a section of scene files, and may be one of a recipe too.
+std::string scene_topic_text(const SdlSection& section, const std::string& name) {
+  const std::string topic(section.topic);
+  if (!is_recipe_section(topic)) return section_text(section, name);
+  if (!name.empty() && find_type(section, name) == nullptr &&
+      find_key(topic + "." + name) != nullptr)
+    return recipe_text(topic + "." + name);
+  std::string text = section_text(section, name);
+  return name.empty() ? text + "\n" + recipe_section_hint(topic) : text;
+}
+
+/// Of all sections that have a type of that name ("mix" is a material and a texture).
+std::string type_topic_text(const std::string& type) {
+  std::string text;
+  for (const SdlSection* section : sdl_sections())
+    if (section->types.size() > 1 && find_type(*section, type) != nullptr)
+      text += (text.empty() ? "" : "\n") + section_text(*section, type);
+  return text;
+}
+
+[[noreturn]] void refuse_topic(const std::string& topic) {
   std::vector<std::string_view> words = help_topics();
   for (const Verb& verb : verbs())
     words.emplace_back(verb.name);
-  if (std::find(words.begin(), words.end(), topic) != words.end()) {
-    if (!name.empty())
-      fail(ErrorKind::usage, "help {}: does not know what to do with {}", topic, name);
-    return help_of(topic);
-  }
-  fail(ErrorKind::usage, "help: {} is no verb or topic{}", topic, known_words(topic, words));
+  const std::string_view key = nearest(topic, words).empty() ? nearest_key(topic) : "";
+  fail(ErrorKind::usage, "help: {} is no verb or topic{}", topic,
+       key.empty() ? known_words(topic, words) : fmt::format(", did you mean {}?", key));
+}
+
+std::string topic_text(const std::string& topic, const std::string& name) {
+  if (topic == k_recipe) return recipe_text(name);
+  if (const SdlSection* section = find_topic(topic)) return scene_topic_text(*section, name);
+  // "models" is a verb too, whose help names the keys.
+  if (is_recipe_section(topic) && !(is_verb(topic) && name.empty()))
+    return recipe_text(name.empty() ? topic : topic + "." + name);
+  const std::string types = type_topic_text(topic);
+  if (!is_verb(topic) && find_key(topic) == nullptr && types.empty()) refuse_topic(topic);
+  if (!name.empty())
+    fail(ErrorKind::usage, "help {}: does not know what to do with {}", topic, name);
+  return is_verb(topic) ? help_of(topic) : types.empty() ? recipe_text(topic) : types;
 }
 
 }  // namespace
@@ -115,6 +153,28 @@ std::vector<std::string_view> help_topics() {
     topics.push_back(section->topic);
   topics.push_back(k_recipe);
   return topics;
+}
+
+bool is_recipe_section(std::string_view name) {
+  const std::vector<std::string_view> sections = recipe_sections();
+  return std::find(sections.begin(), sections.end(), name) != sections.end();
+}
+
+std::string recipe_section_hint(std::string_view name) {
+  return is_recipe_section(name)
+             ? fmt::format("The keys of a recipe's [{0}]: dsbuild help recipe {0}\n", name)
+             : "";
+}
+
+std::vector<HelpRow> topic_rows() {
+  std::vector<HelpRow> rows{
+      {std::string(k_recipe), fmt::format("every key of a recipe; or those of one section: {}",
+                                          fmt::join(recipe_sections(), ", "))}};
+  for (const SdlSection* section : sdl_sections())
+    rows.push_back({std::string(section->topic),
+                    fmt::format("{}.* of a scene's files: properties, ranges, defaults",
+                                section_of(section->kind))});
+  return rows;
 }
 
 int run_help(const Arguments& arguments) {

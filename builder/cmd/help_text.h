@@ -22,4 +22,11 @@ struct HelpRow {
 /// long for its column has its help below it. "" for no rows.
 std::string help_rows(std::string_view title, const std::vector<HelpRow>& rows);
 
+/// What `dsbuild help TOPIC` knows beside the verbs, a row each.
+std::vector<HelpRow> topic_rows();
+
+bool is_recipe_section(std::string_view name);
+/// Where a verb or topic has the name of a recipe's section: how to ask for that. "" elsewhere.
+std::string recipe_section_hint(std::string_view name);
+
 }  // namespace ds

@@ -106,10 +106,10 @@ constexpr std::array k_keys = {
 
     KeySpec{"camera.set", choice, "", "\"half-dodecahedron\"", k_any,
             R"("half-dodecahedron" | "list" | "orbit" | "hemisphere")", "",
-            "Where the cameras stand: see Cameras"},
+            "Where the cameras stand: see Cameras in recipes/README.md"},
     KeySpec{"camera.distance_m", number, "m", "0.252", k_distance, "\"fit\"", k_ring_sets,
             "Distance from camera.target. \"fit\": for each model and view the least at which the "
-            "model's bounding sphere is in the picture: see Cameras"},
+            "model's bounding sphere is in the picture: see Cameras in recipes/README.md"},
     KeySpec{"camera.fit_margin", number, "", "0.05", between(0, 0.9), "",
             R"(camera.distance_m = "fit")",
             "Share of the way from the picture's middle to each edge that stays free around the "
@@ -163,7 +163,8 @@ constexpr std::array k_keys = {
             "false",
             "",
             "Instead of spp: add samples where they are needed until the developed picture's "
-            "relative error is below this with 97.5 % confidence: see How exact a picture is"},
+            "relative error is below this with 97.5 % confidence: see How exact a picture is in "
+            "recipes/README.md"},
     KeySpec{"engine.max_spp", integer, "", "1024", between(16, 1 << 24), "",
             "engine.error != false",
             "Most samples a pixel, on the picture's average, to reach engine.error with; a picture "
@@ -191,10 +192,10 @@ constexpr std::array k_keys = {
             "Full width of the Blackman-Harris pixel filter; up to 1 it is a box of one pixel"},
     KeySpec{"engine.math", choice, "", "\"strict\"", k_any, R"("strict" | "fast")", "",
             "\"strict\": the same bits on every device; \"fast\": for previews"},
-    KeySpec{
-        "engine.outlier_limit", number, "radiance", "0", between(0, 1e12), "", "",
-        "Scale samples down whose greatest component (linear, before the tone map) is above "
-        "this, which takes light away: see Samples that are not added. 0: no sample is touched"},
+    KeySpec{"engine.outlier_limit", number, "radiance", "0", between(0, 1e12), "", "",
+            "Scale samples down whose greatest component (linear, before the tone map) is above "
+            "this, which takes light away: see Samples that are not added in recipes/README.md. 0: "
+            "no sample is touched"},
     KeySpec{"engine.rejected_limit", number, "", "0.001", between(0, 1), "", "",
             "Largest share of a picture's samples that may be NaN, infinite or negative; over it "
             "the picture fails"},

@@ -251,9 +251,13 @@ std::string name_from_file(const Settings& settings, const fs::path& file) {
 
 Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrides) {
   std::error_code error;
-  if (!fs::is_regular_file(file, error))
+  if (!fs::is_regular_file(file, error)) {
+    const fs::path with_ending = file.string() + ".toml";
     fail(ErrorKind::recipe, "{}: must be a recipe, found no file{}", file.string(),
-         similar_name(file));
+         fs::is_regular_file(with_ending, error)
+             ? fmt::format(", did you mean {}?", with_ending.string())
+             : similar_name(file));
+  }
   Diagnostics diagnostics(ErrorKind::recipe);
   RecipeValue::Table tree = parse_recipe_text(read_text_file(file), file.string(), diagnostics);
   const bool parsed = diagnostics.empty();

@@ -7,6 +7,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -109,6 +110,57 @@ std::vector<std::string> split_key(std::string_view key) {
   return parts;
 }
 
+/// A value of the line that lacks its quotes: "my data" of `name = my data`, "a.off" of `files =
+/// [a.off]`. Nothing where none does.
+std::optional<std::string> unquoted_value(std::string_view line) {
+  constexpr std::string_view k_blank = " \t\r";
+  line = line.substr(std::min(line.find('=') + 1, line.size()));
+  line = line.substr(std::min(line.find_first_not_of(k_blank), line.size()));
+  const bool is_list = line.starts_with('[') || line.starts_with('{');
+  for (std::size_t at = 0; at < line.size();) {
+    const char c = line[at];
+    if (c == '#') break;
+    if (std::string_view(" \t\r,[]{}").find(c) != std::string_view::npos) {
+      ++at;
+      continue;
+    }
+    if (c == '"' || c == '\'') {
+      at = std::min(line.find(c, at + 1), line.size() - 1) + 1;
+      continue;
+    }
+    const std::size_t end =
+        std::min(line.find_first_of(is_list ? ",[]{}#\"' \t" : "#\"'", at + 1), line.size());
+    std::string_view word = line.substr(at, end - at);
+    word = word.substr(0, word.find_last_not_of(k_blank) + 1);
+    const bool is_bare = std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '/' || c == '.' ||
+                         c == '~' || c == '_';
+    if (is_bare && word != "true" && word != "false" && word != "inf" && word != "nan")
+      return std::string(word);
+    at = end;
+  }
+  return std::nullopt;
+}
+
+std::string_view line_of(std::string_view text, std::size_t number) {
+  for (; number > 1 && !text.empty(); --number)
+    text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  return text.substr(0, text.find('\n'));
+}
+
+/// What toml++ says of a string without quotes speaks of whatever it might have been instead.
+std::string explained(const toml::parse_error& error, std::string_view text) {
+  const std::string_view line = line_of(text, error.source().begin.line);
+  const std::optional<std::string> value =
+      line.find('=') == line.npos ? std::nullopt : unquoted_value(line);
+  if (!value) return fmt::format("must be TOML: {}", error.description());
+  std::string lower = *value;
+  for (char& c : lower)
+    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (lower == "true" || lower == "false")
+    return fmt::format("must be TOML: wanted {}, got {}", lower, *value);
+  return fmt::format("must be TOML: a string wants quotes: {}, got {}", to_toml(*value), *value);
+}
+
 /// The value of the TOML document "v = text", or nothing where that is none or holds more than one
 /// value.
 std::optional<toml::table> parse_one_value(std::string_view text) {
@@ -185,7 +237,7 @@ RecipeValue::Table parse_recipe_text(std::string_view bytes, const std::string& 
   try {
     return Converter(file, false, diagnostics).table(toml::parse(text, file));
   } catch (const toml::parse_error& error) {
-    diagnostics.add(place_of(error.source(), file), "must be TOML: {}", error.description());
+    diagnostics.add(place_of(error.source(), file), "{}", explained(error, text));
     return {};
   }
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Exit codes and messages of wrong commands; needs no OpenCL device."""
+"""Exit codes and messages of wrong commands."""
 import os
 import shutil
 
@@ -51,6 +51,30 @@ class UsageTest(TinyCase):
         self.assertIn("lens_radius_m", camera)
         self.assertNotIn("[engine]", camera)
 
+    def test_help_of_what_a_recipe_holds(self):
+        for section in "dataset", "classes", "environments", "camera", "engine", "outputs":
+            run = self.run_it("help", section)
+            self.assertEqual((run.code, run.out), (0, self.run_it("help", "recipe", section).out), run)
+        self.assertIn("dsbuild help recipe models", self.run_it("help", "models").out)
+        self.assertEqual(self.run_it("help", "models", "dir").out, self.run_it("help", "recipe", "models.dir").out)
+        one = self.run_it("help", "recipe", "camera.fov_deg").out
+        self.assertEqual(self.run_it("help", "camera.fov_deg").out, one)
+        self.assertEqual(self.run_it("help", "camera", "fov_deg").out, one)
+        materials = self.run_it("help", "materials").out
+        self.assertIn("uroughness", materials)
+        self.assertIn("dsbuild help recipe materials", materials)
+        self.assertEqual(self.run_it("help", "materials", "assign").out,
+                         self.run_it("help", "recipe", "materials.assign").out)
+        self.assertEqual(self.run_it("help", "glass").out, self.run_it("help", "materials", "glass").out)
+        mix = self.run_it("help", "mix").out
+        self.assertIn("scene.textures.NAME.type = mix", mix)
+        self.assertIn("scene.materials.NAME.type = mix", mix)
+        overview = self.run_it("help").out
+        for topic in TOPICS:
+            self.assertRegex(overview, rf"\n  {topic} ")
+        # What it refers to has the name of its file.
+        self.assertIn("recipes/README.md", " ".join(self.run_it("help", "camera").out.split()))
+
     def test_misspelt_words_get_the_right_one(self):
         for arguments, message in (
                 (["bulid", self.recipe], "bulid is no verb of dsbuild, did you mean build?"),
@@ -63,16 +87,43 @@ class UsageTest(TinyCase):
                 (["status", self.recipe, "--force"], "status has no option --force; build has it"),
                 (["--json", "plan", self.recipe], "--json stands before the verb: write dsbuild VERB --json"),
                 (["build"], "build: wanted a DATASET"),
-                (["build", self.recipe, "other"], "build: does not know what to do with other"),
+                (["build", self.recipe, "other"], "build: does not know what to do with other; it takes DATASET"),
+                (["explain", self.recipe, "box.off/0", "three", "four", "five"],
+                 "explain: does not know what to do with three four five; it takes DATASET and IMAGE"),
+                (["devices", "cpu"], "devices: does not know what to do with cpu; it takes options only"),
+                (["build", self.recipe, "--set", "engine.width", "64"],
+                 "build --set: wanted KEY=VALUE, found engine.width 64; write --set engine.width=64"),
+                (["build", self.recipe, "--set", "engine.width"], "build --set: wanted KEY=VALUE, found engine.width; "),
+                (["build", "--set", "engine.width", "--json", self.recipe], "wanted KEY=VALUE, found engine.width; "),
+                (["build", self.recipe, "--device"], "build: wanted --device NAME, found nothing behind it"),
+                (["build", "--store", "--json", self.recipe], "build: wanted --store DIR, found --json behind it"),
+                (["build", self.recipe, "-o"], "build: wanted -o DIR, found nothing behind it"),
+                (["build", self.recipe, "--json=yes"], "build --json: takes no value, got yes"),
+                (["build", self.recipe, "-o", "a", "-o", "b"], "build -o: wanted once, found again"),
+                (["build", self.recipe, "-o", "a", "--output=b"], "build --output: wanted once, found again"),
+                (["verify", self.recipe, "--rerender", "some"], "verify --rerender: wanted a whole number in [0, "),
+                (["verify", self.recipe, "--rerender=1.5"], ", got 1.5"),
+                (["verify", self.recipe, "--seed", "-1"], "verify --seed: wanted a whole number in [0, "),
+                (["accuracy", self.recipe, "--seeds", "1"], "accuracy --seeds: wanted a whole number in [2, 64], got 1"),
+                (["accuracy", self.recipe, "--against", "minuets"],
+                 "accuracy --against: wanted minutes or spp, got minuets, did you mean minutes?"),
+                (["plan", self.recipe, "--error", "two"], "plan --error: wanted a number in [1e-06, 1], got two"),
+                (["plan", self.recipe.with_suffix("")], "found no file, did you mean "),
+                (["plan", self.tiny], "wanted a recipe or a folder that dsbuild built, did you mean " + str(self.recipe)),
                 (["plan", self.tiny / "recpie.toml"], "found no file, did you mean recipe.toml?"),
                 (["explain", self.recipe, "box.of/0"], "no such image, did you mean box.off/0?"),
                 (["explain", self.recipe, "human"], "no such image; there are box.off/0, box.off/1,"),
+                (["explain", self.recipe, "box/2"], "no such image, did you mean box.off/2?"),
+                (["explain", self.recipe, "out/tiny/images/tetra.ply/1.mask.png"], "no such image, did you mean tetra.ply/1?"),
                 (["help", "material"], "did you mean materials?"),
                 (["help", "cheese"], "help: cheese is no verb or topic; there are"),
                 (["help", "materials", "galss"], "galss is no type of materials, did you mean glass?"),
                 (["help", "lights", "area"], "area is no type of lights; there are point, spot,"),
                 (["help", "recipe", "camera.fov"], "did you mean camera.fov_deg?"),
                 (["help", "recipe", "camra"], "did you mean camera?"),
+                (["help", "fov_deg"], "help: fov_deg is no verb or topic, did you mean camera.fov_deg?"),
+                (["help", "camera", "fov"], "did you mean camera.fov_deg?"),
+                (["help", "engine", "spp", "64"], "help: does not know what to do with 64"),
                 (["plan", self.recipe, "--set", "camera.set=orbti"], 'did you mean "orbit"?'),
                 (["plan", self.recipe, "--set", "camra.set=orbit"], "camra is no section of a recipe, did you mean camera?"),
                 (["plan", self.recipe, "--set", "lens.sharp=1"], "lens is no section of a recipe; there are dataset,"),
@@ -130,12 +181,48 @@ class UsageTest(TinyCase):
             self.assertTrue(run.err.startswith("dsbuild: error: "), run)
             self.assertEqual(run.out, "")
 
+    def test_a_wrong_device_or_shard_is_said_before_any_work(self):
+        name = self.run_it("devices", "--json").json["devices"][0]["name"]
+        word = max("".join(c if c.isalnum() else " " for c in name.lower()).split(), key=len)
+        for verb in ["build"], ["build", "-n"], ["build", "-k"], ["plan", "--time"], ["verify"], ["accuracy"]:
+            run = self.run_it(*verb, self.recipe, "--device", "abacus")
+            self.assertEqual((run.code, run.err.count("dsbuild: error: ")), (2, 1), run)
+            self.assertIn('--device: no OpenCL device has "abacus" in its name', run.err)
+            self.assertIn(f"0: {name}", run.err)
+            self.assertEqual(run.out, "")
+        self.assertIn(f", did you mean {word}?", self.run_it("build", self.recipe, "--device", word + "x").err)
+        self.assertIn("has the number 99; there", self.run_it("build", self.recipe, "--device", "99").err)
+        for shard in "0/4", "5/4", "2", "2/", "a/b", "2-4", "2/4/8", "-1/4", "1/99999":
+            run = self.run_it("build", self.recipe, f"--shard={shard}")
+            self.assertEqual((run.code, run.err.count("\n")), (2, 1), run)
+            self.assertIn("--shard: wanted I/N", run.err)
+            self.assertIn(shard, run.err)
+        self.assertFalse((self.folder / "out").exists())
+
     def test_accuracy_wants_pictures(self):
         run = self.run_it("accuracy", self.recipe, "--set", "outputs.image=false")
         self.assertEqual(run.code, 2, run)
         self.assertIn("found outputs.image = false; measure it with --set outputs.image=true", run.err)
         self.assertEqual(run.out, "")
         self.assertEqual(list(self.folder.glob("*accuracy*")), [])
+
+    def test_a_string_without_quotes_is_said_to_be_one(self):
+        whole = self.recipe.read_text()
+        line = whole.splitlines().index('name = "tiny"') + 1
+        for value, wanted in (("my", '"my"'), ("my data  # the data", '"my data"'), ("models/a", '"models/a"'),
+                              ("~/x", '"~/x"'), ("True", "true")):
+            self.recipe.write_text(whole.replace('name = "tiny"', f"name = {value}"))
+            run = self.run_it("plan", self.recipe)
+            self.assertEqual((run.code, run.err.count("dsbuild: error: ")), (2, 1), run)
+            self.assertIn(f"recipe.toml:{line}:", run.err)
+            self.assertIn(wanted, run.err)
+            if wanted.startswith('"'):
+                self.assertIn(f"must be TOML: a string wants quotes: {wanted}, got {wanted[1:-1]}\n", run.err)
+        self.recipe.write_text(whole.replace('dir = "models"', 'files = ["models/box.off", models/tetra.ply]'))
+        self.assertIn('a string wants quotes: "models/tetra.ply"', self.run_it("plan", self.recipe).err)
+        # Other faults of the text are told as they were.
+        self.recipe.write_text(whole.replace("seed = 7", "seed = "))
+        self.assertNotIn("quotes", self.run_it("plan", self.recipe).err)
 
     def test_a_wrong_recipe_names_each_place(self):
         self.edit("recipe.toml", "spp = 1", "spp = -1\nunknown = 3")
@@ -174,6 +261,11 @@ class UsageTest(TinyCase):
         run = self.run_it("build", self.recipe, "--json", env=environment)
         self.assertEqual(run.code, 1, run)
         self.assert_counts(run.json, built=0, images=IMAGES)
+        # It is no fault of an image.
+        for more in ([], ["-k"]):
+            run = self.run_it("build", self.recipe, *more, env=environment)
+            self.assertEqual(run.err.count("dsbuild: error: "), 1, run)
+            self.assertIn("dsbuild: error: tracing: no OpenCL device found", run.err)
         self.assertEqual(self.run_it("devices", env=environment).code, 1)
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/device/cl_devices.h"
 
+#include "tracer/base/nearest.h"
 #include "tracer/device/pocl_environment.h"
 
 #include <CL/cl_ext.h>
@@ -96,6 +97,20 @@ std::optional<std::size_t> whole_number(const std::string& text) {
   return value;
 }
 
+/// What a wrong word was meant to be, of the words of the devices' names: "nvidia", "h100".
+std::string meant_word(const std::string& selector, const std::vector<FoundDevice>& devices) {
+  std::vector<std::string> words;
+  for (const FoundDevice& device : devices)
+    for (std::string word; const char c : lower(device.info.name) + " ") {
+      if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+        word += c;
+      else if (!word.empty())
+        words.push_back(std::exchange(word, ""));
+    }
+  const std::vector<std::string_view> known(words.begin(), words.end());
+  return did_you_mean(selector, known);
+}
+
 }  // namespace
 
 FoundDevice select_device(const std::string& selector) {
@@ -111,16 +126,26 @@ FoundDevice select_device(const std::string& selector) {
   }
   if (const std::optional<std::size_t> index = whole_number(selector)) {
     if (*index < devices.size()) return devices[*index];
-    fail(ErrorKind::device, "no OpenCL device has the number {}; there are {}", selector,
-         listing(devices));
+    fail(ErrorKind::usage, "--device: no OpenCL device has the number {}; there {} {}", selector,
+         devices.size() == 1 ? "is" : "are", listing(devices));
   }
   std::vector<FoundDevice> fitting;
   for (const FoundDevice& device : devices)
     if (lower(device.info.name).find(lower(selector)) != std::string::npos)
       fitting.push_back(device);
   if (fitting.size() == 1) return fitting.front();
-  fail(ErrorKind::device, "{} OpenCL devices have \"{}\" in their name, wanted one; there are {}",
+  if (fitting.empty())
+    fail(ErrorKind::usage, "--device: no OpenCL device has \"{}\" in its name{}; there {} {}",
+         selector, meant_word(selector, devices), devices.size() == 1 ? "is" : "are",
+         listing(devices));
+  fail(ErrorKind::usage,
+       "--device: {} OpenCL devices have \"{}\" in their name, wanted one (its number tells it "
+       "from the others); there are {}",
        fitting.size(), selector, listing(devices));
+}
+
+void check_selector(const std::string& selector) {
+  select_device(selector);
 }
 
 std::vector<DeviceInfo> list_devices() {

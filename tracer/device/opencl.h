@@ -40,6 +40,9 @@ struct DeviceInfo {
 /// where no cache folder can be made.
 std::vector<DeviceInfo> list_devices();
 
+/// Throws what `Device` throws for a selector that fits none or several, without making one.
+void check_selector(const std::string& selector);
+
 /// Device memory; a handle, copies share it. Freed with the last handle. Use it with the device
 /// that made it.
 class Buffer {
@@ -97,7 +100,8 @@ class Device {
  public:
   /// `selector`: "" = the first CPU device, else the first of any; a number = index into
   /// `list_devices()`; anything else = part of a device's name in any case, which must fit one
-  /// device only. Throws Error(device), with a list of what there is, where none fits.
+  /// device only. Throws Error(usage), with a list of what there is, where none fits, and
+  /// Error(device) where there is none at all.
   explicit Device(const std::string& selector);
   ~Device();
   Device(Device&&) noexcept;

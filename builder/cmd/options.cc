@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/cmd/command_line.h"
+#include "tracer/base/error.h"
+#include "tracer/base/nearest.h"
+#include "tracer/base/number_range.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <system_error>
+#include <type_traits>
+
+namespace ds {
+namespace {
+
+constexpr NumberRange k_any_count{.least = 0, .most = 1e15};
+
+/// std::uint64_t of std::uint64_t and of std::optional<std::uint64_t>.
+template <typename T>
+struct Held {
+  using type = T;
+};
+template <typename T>
+struct Held<std::optional<T>> {
+  using type = T;
+};
+
+/// An option whose value is a number: a whole one where `to` is of whole numbers.
+template <typename T>
+void add_number(CLI::App& verb, const char* name, T& to, NumberRange range, const char* help) {
+  using Number = typename Held<T>::type;
+  constexpr bool k_whole = std::is_integral_v<Number>;
+  const auto read = [&to, name, range, verb = verb.get_name()](const std::string& text) {
+    Number value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() ||
+        !range.contains(static_cast<double>(value)))
+      fail(ErrorKind::usage, "{} {}: wanted a {}number {}, got {}", verb, name,
+           k_whole ? "whole " : "", range.text(), text.empty() ? "nothing" : text);
+    to = value;
+  };
+  verb.add_option_function<std::string>(name, read, help)->type_name(k_whole ? "N" : "X");
+}
+
+/// An option whose value is one of a few words.
+void add_word(CLI::App& verb, const char* name, std::string& to,
+              const std::vector<std::string_view>& known, const char* help) {
+  const auto read = [&to, name, known, verb = verb.get_name()](const std::string& text) {
+    if (std::find(known.begin(), known.end(), text) == known.end())
+      fail(ErrorKind::usage, "{} {}: wanted {}, got {}{}", verb, name,
+           fmt::format("{}", fmt::join(known, " or ")), text, did_you_mean(text, known));
+    to = text;
+  };
+  verb.add_option_function<std::string>(name, read, help)->type_name("WHAT");
+}
+
+}  // namespace
+
+void add_option(CLI::App& verb, Option option, Arguments& to) {
+  switch (option) {
+    case Option::target:
+      verb.add_option("DATASET", to.target, "recipe, or the folder an earlier build wrote")
+          ->required();
+      return;
+    case Option::optional_target_and_image:
+      verb.add_option("DATASET", to.target,
+                      "recipe or folder; may be left out where IMAGE is a file of a dataset")
+          ->required();
+      verb.add_option("IMAGE", to.image, "id (human.ply/0) or file of an image");
+      return;
+    case Option::topic:
+      verb.add_option(
+          "TOPIC", to.topic,
+          fmt::format("a verb; {}; a section or key of a recipe (camera, camera.fov_deg)",
+                      fmt::join(help_topics(), ", ")));
+      verb.add_option("NAME", to.topic_name,
+                      "one type of the topic (materials glass), or a section or key of a recipe");
+      return;
+    case Option::overrides:
+      verb.add_option(
+              "--set", to.overrides,
+              "use this in place of the recipe's (repeatable; with a recipe only, not with a "
+              "folder, which keeps what it was built with)")
+          ->allow_extra_args(false)
+          ->type_name("KEY=VALUE");
+      return;
+    case Option::output_folder:
+      verb.add_option("-o,--output", to.output_folder,
+                      "the dataset's folder [out/<dataset.name>]; with a recipe only")
+          ->type_name("DIR");
+      return;
+    case Option::store_folder:
+      verb.add_option("--store", to.store_folder,
+                      "store to share between datasets [<output>/.dsbuild]")
+          ->type_name("DIR");
+      return;
+    case Option::device:
+      verb.add_option("--device", to.device,
+                      "OpenCL device, as dsbuild devices lists them: its number or part of its "
+                      "name")
+          ->type_name("NAME");
+      return;
+    case Option::json:
+      verb.add_flag("--json", to.json, "the last line of standard output is one JSON object");
+      return;
+    case Option::dry_run:
+      verb.add_flag("-n,--dry-run", to.dry_run, "only say what would be made");
+      return;
+    case Option::keep_going:
+      verb.add_flag("-k,--keep-going", to.keep_going,
+                    "make what can be made where something fails");
+      return;
+    case Option::force:
+      verb.add_flag("--force", to.force, "trace every image again");
+      return;
+    case Option::rehash:
+      verb.add_flag("--rehash", to.rehash,
+                    "read every model and output, also where size, times and inode are as before");
+      return;
+    case Option::adopt:
+      verb.add_flag("--adopt", to.adopt,
+                    "take the folder over though it belongs to another recipe");
+      return;
+    case Option::copy:
+      verb.add_flag("--copy", to.copy,
+                    "make every output a file of its own, which shares nothing with the store");
+      return;
+    case Option::verbose:
+      verb.add_flag("-v,--verbose", to.verbose,
+                    "name every image, where else those with one reason share a line");
+      return;
+    case Option::explain:
+      verb.add_flag("--explain", to.explain, "say why each image is made");
+      return;
+    case Option::strict:
+      verb.add_flag(
+          "--strict", to.strict,
+          "what makes a dataset useless is an error: empty masks, black pictures, classes "
+          "without an image, ... (exit code 1; all is made)");
+      return;
+    case Option::shard:
+      verb.add_option("--shard", to.shard,
+                      "make only share I of N of the images, chosen by a hash of their names; when "
+                      "all N shares are made the dataset is whole [1/1]")
+          ->type_name("I/N");
+      return;
+    case Option::effects:
+      verb.add_flag("--effects", to.effects,
+                    "list what the image's program simulates and what it leaves out, and why");
+      return;
+    case Option::rerender:
+      add_number(verb, "--rerender", to.rerender, k_any_count,
+                 "trace N images again and compare their bytes");
+      return;
+    case Option::report_file:
+      verb.add_option("-o,--output", to.report_file,
+                      "the report [NAME-accuracy.html]; its numbers go beside it, ending in .csv")
+          ->type_name("FILE");
+      return;
+    case Option::against:
+      add_word(verb, "--against", to.against, {"minutes", "spp"},
+               "plot against minutes or spp only [both]");
+      return;
+    case Option::report_size:
+      add_number(verb, "--spp", to.most_spp, {.least = 4, .most = 1 << 20},
+                 "most samples a pixel to measure [the recipe's, at least 16]");
+      add_number(verb, "--seeds", to.seeds, {.least = 2, .most = 64},
+                 "pictures for each error bar [4]");
+      verb.add_flag("--no-choices", to.no_choices, "leave out what settings and effects cost");
+      return;
+    case Option::forecast:
+      verb.add_flag("--time", to.time, "foretell time and disk of what is stale");
+      add_number(verb, "--error", to.error, {.least = 1e-6, .most = 1},
+                 "foretell them for this relative error of every picture (0.02)");
+      verb.add_option("--budget", to.budget, "say which error this time buys (8h, 90m)")
+          ->type_name("TIME");
+      verb.add_flag("--recalibrate", to.recalibrate,
+                    "measure anew what is foretold from; else once for each program and device");
+      return;
+    case Option::seed:
+      add_number(verb, "--seed", to.seed, k_any_count, "chooses the images of --rerender [0]");
+      return;
+  }
+}
+
+}  // namespace ds
