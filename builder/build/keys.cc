@@ -5,6 +5,7 @@
 #include "tracer/base/canonical.h"
 #include "tracer/base/hex_text.h"
 #include "tracer/device/program_text.h"
+#include "tracer/device/program_tokens.h"
 #include "tracer/render/engine_text.h"
 #include "tracer/scene/sdl.h"
 
@@ -249,7 +250,7 @@ KeyMaker::State::State(const Recipe& recipe, Inputs& inputs, TextSet& texts)
       inputs_(inputs),
       texts_(texts),
       output_kinds_(kinds_of(recipe.outputs)),
-      geometry_program_(hash_text(strip_comments(geometry_program_text()))),
+      geometry_program_(hash_text(program_tokens(geometry_program_text()))),
       five_(form_of_parts({})),
       mask_(output_form("mask", "")),
       depth_(output_form("depth", "")) {
@@ -317,7 +318,7 @@ const std::string& KeyMaker::State::program(const ImageSpec& image) {
   Features features = features_of(scene_without_model(inputs_, image), image.camera);
   for (const auto& [known, text] : programs_)
     if (known == features) return text;
-  std::string text = strip_comments(path_program_text(features));
+  std::string text = program_tokens(path_program_text(features));
   return programs_.emplace_back(std::move(features), std::move(text)).second;
 }
 

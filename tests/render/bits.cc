@@ -4,6 +4,7 @@
 #include "tracer/base/error.h"
 #include "tracer/base/hash.h"
 #include "tracer/device/program_text.h"
+#include "tracer/device/program_tokens.h"
 
 #include <algorithm>
 #include <span>
@@ -52,11 +53,11 @@ std::vector<Picture> wanted_pictures(const BitsRequest& request) {
 std::map<std::string, std::string> bits_of(const BitsRequest& request) {
   std::map<std::string, std::string> table;
   table["host_version"] = std::to_string(k_host_render_version);
-  table["geometry program"] = hash_text(strip_comments(geometry_program_text())).hex();
+  table["geometry program"] = hash_text(program_tokens(geometry_program_text())).hex();
   Tracer tracer(request.tracer);
   for (const Picture& picture : wanted_pictures(request)) {
     const Features features = features_of(picture.scene, picture.camera);
-    table[picture.name + " program"] = hash_text(strip_comments(path_program_text(features))).hex();
+    table[picture.name + " program"] = hash_text(program_tokens(path_program_text(features))).hex();
     tracer.set_scene(picture.scene);
     table[picture.name + " film"] = film_hash(tracer.trace(picture.camera, picture.engine));
     table[picture.name + " geometry"] = geometry_hash_of(

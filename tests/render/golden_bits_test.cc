@@ -23,8 +23,13 @@ std::map<std::string, std::string> golden_table() {
 TEST(GoldenBits, PicturesAreThoseOfTheTable) {
   const std::map<std::string, std::string> golden = golden_table();
   const std::map<std::string, std::string> now = pictures::bits_of({});
-  EXPECT_EQ(now, golden) << "the table now; ci/bits --update writes it:\n"
-                         << pictures::to_text(now);
+  // A program may change and move no pixel: its rows are for what follows.
+  const auto pixels = [](std::map<std::string, std::string> table) {
+    std::erase_if(table, [](const auto& row) { return row.first.ends_with(" program"); });
+    return table;
+  };
+  EXPECT_EQ(pixels(now), pixels(golden)) << "the table now; ci/bits --update writes it:\n"
+                                         << pictures::to_text(now);
   // What moved a picture must be in its key: the program's text or the host's version.
   if (golden.at("host_version") != now.at("host_version")) return;
   for (const auto& [key, value] : now) {

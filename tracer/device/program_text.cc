@@ -280,35 +280,4 @@ std::string rays_program_text() {
   return assemble("", "tracer/kernels/rays.cl");
 }
 
-std::string strip_comments(std::string_view text) {
-  std::string bare;
-  bare.reserve(text.size());
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t slash = std::min(text.find('/', i), text.size());
-    bare += text.substr(i, slash - i);
-    i = slash;
-    if (text.substr(i, 2) == "//") {
-      i = std::min(text.find('\n', i), text.size());
-    } else if (text.substr(i, 2) == "/*") {
-      const std::size_t end = text.find("*/", i + 2);
-      i = end == text.npos ? text.size() : end + 2;
-      bare += ' ';
-    } else if (i < text.size()) {
-      bare += text[i++];
-    }
-  }
-  std::string out;
-  out.reserve(bare.size());
-  std::string_view rest = bare;
-  while (!rest.empty()) {
-    std::string_view line = rest.substr(0, rest.find('\n'));
-    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
-    const std::size_t last = line.find_last_not_of(" \t\r");
-    if (last == line.npos) continue;
-    out += line.substr(0, last + 1);
-    out += '\n';
-  }
-  return out;
-}
-
 }  // namespace ds

@@ -68,7 +68,5 @@ std::string rays_program_text();
 
 /// A kernel file with its includes put in place; each file once.
 std::string assemble(const std::string& definitions, std::string_view root_path);
-/// Without comments, blank lines and trailing spaces: what the render key takes of a program.
-std::string strip_comments(std::string_view text);
 
 }  // namespace ds

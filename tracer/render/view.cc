@@ -4,6 +4,7 @@
 #include "tracer/base/canonical.h"
 #include "tracer/base/error.h"
 #include "tracer/device/program_text.h"
+#include "tracer/device/program_tokens.h"
 #include "tracer/render/engine_text.h"
 #include "tracer/render/film.h"
 #include "tracer/scene/sdl.h"
@@ -179,13 +180,13 @@ std::string canonical_kept_engine(const EngineSettings& engine, std::string_view
 
 std::string canonical_engine(const Scene& scene, const Camera& camera,
                              const EngineSettings& engine) {
-  return canonical_engine(engine, strip_comments(path_program_text(features_of(scene, camera))));
+  return canonical_engine(engine, program_tokens(path_program_text(features_of(scene, camera))));
 }
 
 std::string canonical_kept_engine(const Scene& scene, const Camera& camera,
                                   const EngineSettings& engine) {
   return canonical_kept_engine(engine,
-                               strip_comments(path_program_text(features_of(scene, camera))));
+                               program_tokens(path_program_text(features_of(scene, camera))));
 }
 
 }  // namespace ds

@@ -5,6 +5,7 @@
 
 #include "tests/render/pictures.h"
 #include "tracer/device/program_text.h"
+#include "tracer/device/program_tokens.h"
 #include "tracer/scene/type_tables.h"
 
 #include <gtest/gtest.h>
@@ -40,7 +41,7 @@ std::vector<pictures::Picture> scenes() {
 TEST(Effects, AreSimulatedWhereTheProgramHoldsTheirCode) {
   for (const pictures::Picture& p : scenes()) {
     const std::vector<Effect> effects = effects_of(p.scene, p.camera);
-    const std::string text = strip_comments(path_program_text(features_of(p.scene, p.camera)));
+    const std::string text = program_tokens(path_program_text(features_of(p.scene, p.camera)));
     const auto has = [&](const std::string& code) { return text.find(code) != text.npos; };
     for (const NodeType& type : material_types()) {
       const std::string code = type.name == "mix" ? "#define DS_MIX_NUMBER "

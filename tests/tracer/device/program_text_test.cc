@@ -5,6 +5,7 @@
 
 #include "tests/render/pictures.h"
 #include "tracer/base/error.h"
+#include "tracer/device/program_tokens.h"
 #include "tracer/kernels/embedded.h"
 #include "tracer/scene/type_tables.h"
 
@@ -28,27 +29,7 @@ Scene scene_of(const std::vector<std::string_view>& materials) {
 }
 
 std::string text_of(const Scene& scene, const Camera& camera = {}) {
-  return strip_comments(path_program_text(features_of(scene, camera)));
-}
-
-TEST(StripComments, KeepsCodeOnly) {
-  EXPECT_EQ(strip_comments("a  // one\n\n/* two\n three */ b\nc /* d */ e  \n// f"),
-            "a\n  b\nc   e\n");
-  EXPECT_EQ(strip_comments(""), "");
-  EXPECT_EQ(strip_comments("/* not closed"), "");
-  EXPECT_EQ(strip_comments("a / b * c\r\n"), "a / b * c\n");
-}
-
-TEST(StripComments, ACommentMoreOrLessChangesNothing) {
-  for (const EmbeddedFile& file : std::span(k_embedded_files, k_embedded_file_count)) {
-    const std::string text(file.text);
-    std::string commented = "// a remark at the start\n";
-    for (const char c : text)
-      commented += c == '\n' ? std::string("  // a remark /* at an end\n\n") : std::string(1, c);
-    // A line that goes on by a backslash cannot end in a comment.
-    if (text.find("\\\n") != text.npos) continue;
-    EXPECT_EQ(strip_comments(commented), strip_comments(text)) << file.path;
-  }
+  return program_tokens(path_program_text(features_of(scene, camera)));
 }
 
 TEST(ProgramText, HoldsNoMaterialThatTheSceneDoesNotShow) {
@@ -133,7 +114,7 @@ TEST(ProgramText, EveryFileStandsInItOnce) {
 
 TEST(ProgramText, NoBuiltInTranscendentalIsCalled) {
   // They give other bits on other devices.
-  const std::string text = strip_comments(path_program_text(all_features()) +
+  const std::string text = program_tokens(path_program_text(all_features()) +
                                           geometry_program_text() + rays_program_text());
   const std::regex builtin(
       R"(\b(native_|half_)?(sin|cos|tan|exp2?|exp10|log2?|log10|powr?|pown|asin|acos|atan2?|rsqrt|cbrt|hypot|normalize|fast_\w+|mad)\s*\()");
