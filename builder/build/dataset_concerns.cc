@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <set>
 #include <span>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -57,6 +58,20 @@ void look_at_labels(std::vector<Concern>& concerns, const Recipe& recipe,
     if (!seen.contains(path)) add_example(empty, path);
 }
 
+void look_at_splits(std::vector<Concern>& concerns, const Recipe& recipe,
+                    const std::vector<ImageRecord>& images) {
+  const bool by_chance = recipe.split_test_fraction.has_value();
+  Concern& empty = concern(concerns, "splits_empty");
+  for (const auto& [split, wanted] : {std::pair{"train", by_chance || recipe.train_classes},
+                                      std::pair{"test", by_chance || recipe.test_classes}}) {
+    if (!wanted) continue;
+    ++empty.of;
+    if (std::none_of(images.begin(), images.end(),
+                     [&](const ImageRecord& image) { return image.split == split; }))
+      add_example(empty, split);
+  }
+}
+
 PixelCounts count_file(const std::filesystem::path& file, const std::string& kind) {
   const std::string bytes = read_image_file(file);
   const DecodedImage image = decode_image_bytes(bytes_of(bytes), file.string(), Halves::keep);
@@ -75,6 +90,7 @@ std::vector<Concern> dataset_concerns(const Recipe& recipe, const Concern& unphy
   for (const ImageRecord& image : images)
     look_at_image(concerns, image);
   look_at_labels(concerns, recipe, images);
+  look_at_splits(concerns, recipe, images);
   concern(concerns, "assets_unphysical") = unphysical;
   return concerns;
 }

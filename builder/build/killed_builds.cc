@@ -52,13 +52,14 @@ void remove_temporaries(const fs::path& folder) {
 
 }  // namespace
 
+bool was_killed(const BuildRow& build) {
+  return build.outcome == "running" && build.host == host_name() && !runs_elsewhere(build.process);
+}
+
 void clean_up_killed_builds(Dataset& dataset, std::int64_t current) {
   bool any = false;
-  const std::string host = host_name();
   for (BuildRow build : dataset.database->builds(dataset.row.id)) {
-    const bool killed = build.number != current && build.outcome == "running" &&
-                        build.host == host && !runs_elsewhere(build.process);
-    if (!killed) continue;
+    if (build.number == current || !was_killed(build)) continue;
     any = true;
     build.outcome = "killed";
     dataset.database->update_build(build);

@@ -27,6 +27,7 @@ constexpr ConcernText k_texts[] = {
      "classes.missing = \"ignore\""},
     {"models_unlisted", "model files stand in no class file", "classes.unlisted = \"keep\""},
     {"classes_empty", "classes have no image", "classes.missing = \"ignore\""},
+    {"splits_empty", "splits have no image"},
     {"assets_unphysical", "materials and environments have values that no real surface has"},
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/dataset.h"
+#include "builder/build/killed_builds.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/progress.h"
 #include "builder/cmd/verbs.h"
@@ -12,11 +13,12 @@ int run_log(const Arguments& arguments) {
   const Dataset dataset = open_dataset(arguments.request(), Access::records, disk);
   nlohmann::json array = nlohmann::json::array();
   for (const BuildRow& build : dataset.database->builds(dataset.row.id)) {
+    const std::string outcome = was_killed(build) ? "killed" : build.outcome;
     array.push_back({{"number", build.number},
                      {"started_at", build.started_at},
                      {"host", build.host},
                      {"device", build.device},
-                     {"outcome", build.outcome},
+                     {"outcome", outcome},
                      {"images", build.images},
                      {"built", build.built},
                      {"reused", build.reused},
@@ -26,7 +28,7 @@ int run_log(const Arguments& arguments) {
     if (!arguments.json)
       say(Stream::result,
           "{} UTC  {:<8} {:>6} built {:>6} reused {:>4} failed {:>17} {:>9}  {} {}\n",
-          build.started_at, build.outcome, build.built, build.reused, build.failed,
+          build.started_at, outcome, build.built, build.reused, build.failed,
           format_samples(build.traced_samples), format_duration(build.seconds), build.host,
           build.device);
   }

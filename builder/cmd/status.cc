@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "builder/build/killed_builds.h"
 #include "builder/build/plan.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/progress.h"
@@ -45,7 +46,8 @@ int run_status(const Arguments& arguments) {
     say(Stream::result, "build    {}\n", why_never(dataset));
   else
     say(Stream::result, "build    {} UTC, {}, {} built, {}\n", builds.front().started_at,
-        builds.front().outcome, builds.front().built, format_duration(builds.front().seconds));
+        was_killed(builds.front()) ? "killed" : builds.front().outcome, builds.front().built,
+        format_duration(builds.front().seconds));
   say(Stream::result, "{}\n", summary(counts));
   print_manifest_line(plan);
   return counts.failed > 0 ? 1 : 0;

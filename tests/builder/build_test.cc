@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/host.h"
+#include "builder/build/killed_builds.h"
 #include "manifests/manifest.h"
 #include "tests/builder/tiny_dataset.h"
 
@@ -345,6 +346,13 @@ TEST_F(BuildTest, CleansUpAfterAKilledBuildAndNotAfterARunningOne) {
   {
     const Dataset dataset = open_dataset(request, Access::build, real_disk);
     dataset.database->begin_build(dataset.row.id, host_name(), 999999999);
+    EXPECT_TRUE(was_killed(dataset.database->builds(dataset.row.id).front()));
+    BuildRow other = dataset.database->builds(dataset.row.id).front();
+    other.process = 1;
+    EXPECT_FALSE(was_killed(other));
+    other.process = 999999999;
+    other.host = "elsewhere";
+    EXPECT_FALSE(was_killed(other));
   }
   build();
   EXPECT_FALSE(fs::exists(killed));

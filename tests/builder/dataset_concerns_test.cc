@@ -66,6 +66,22 @@ TEST(DatasetConcernsTest, a_class_has_the_images_of_those_below_it) {
             (Concern{"classes_empty", 2, 5, {"animal", "vehicle/plane"}}));
 }
 
+TEST(DatasetConcernsTest, a_split_that_is_asked_for_has_images) {
+  std::vector<ImageRecord> images{image("a", {})};
+  images[0].split = "train";
+  Recipe recipe;
+  const auto splits = [&] {
+    std::vector<Concern> concerns = dataset_concerns(recipe, k_physical, images);
+    return concern(concerns, "splits_empty");
+  };
+  EXPECT_EQ(splits(), (Concern{"splits_empty", 0, 0, {}}));
+  recipe.split_test_fraction = 0.05;
+  EXPECT_EQ(splits(), (Concern{"splits_empty", 1, 2, {"test"}}));
+  recipe.split_test_fraction.reset();
+  recipe.train_classes = "train.cla";
+  EXPECT_EQ(splits(), (Concern{"splits_empty", 0, 1, {}}));
+}
+
 class ConcernsBuildTest : public TinyDataset {};
 
 TEST_F(ConcernsBuildTest, ABuildThatReusesEverythingStillReports) {

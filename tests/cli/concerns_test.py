@@ -7,7 +7,7 @@ import zlib
 from harness import IMAGES, TinyCase, main
 
 NONE = {name: 0 for name in ("mask_empty", "mask_at_frame", "mask_small", "picture_black", "picture_white",
-                             "models_absent", "models_unlisted", "classes_empty", "assets_unphysical")}
+                             "models_absent", "models_unlisted", "classes_empty", "splits_empty", "assets_unphysical")}
 
 
 def grey_png(path):

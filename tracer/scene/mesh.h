@@ -57,7 +57,8 @@ struct MeshReport {
   std::uint64_t out_of_range = 0;
   std::uint64_t non_finite = 0;  ///< vertices with a NaN, infinite or too far coordinate, removed
                                  ///< with all their faces
-  /// Kept vertices whose normal, uv or colour is not finite; that is set to 0.
+  /// Kept vertices whose normal, uv or colour is not finite; that is set to 0, of a colour only the
+  /// components that are not.
   std::uint64_t bad_attributes = 0;
   std::uint64_t zero_area = 0;        ///< triangles removed: no area
   std::uint64_t duplicate_faces = 0;  ///< triangles removed: the same three corner positions as an

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -87,19 +88,40 @@ class Splitter {
   Polygons& polygons_;
 };
 
+/// What values of one kind say of the range that they run to.
+class ColorRange {
+ public:
+  void add(float x) {
+    if (!std::isfinite(x)) return;
+    most_ = std::max(most_, x);
+    whole_ = whole_ && x == std::floor(x);
+  }
+  float range() const {
+    // Brighter than white by rounding or on purpose, as floats can be.
+    constexpr float k_brightest = 16;
+    if (most_ <= 1 || (!whole_ && most_ <= k_brightest)) return 1;
+    return most_ <= 255 ? 255.0F : 65535.0F;
+  }
+
+ private:
+  float most_ = 0;
+  bool whole_ = true;
+};
+
 }  // namespace
 
 void unit_colors(std::vector<MeshColor>& colors) {
-  bool wide = false, wide_alpha = false;
+  ColorRange rgb, alpha;
   for (const MeshColor& c : colors) {
-    wide = wide || c[0] > 1 || c[1] > 1 || c[2] > 1;
-    wide_alpha = wide_alpha || c[3] > 1;
+    for (std::size_t i = 0; i < 3; ++i)
+      rgb.add(c[i]);
+    alpha.add(c[3]);
   }
-  const auto scaled = [](float x, bool by_255) { return by_255 ? x / 255.0F : x; };
+  const float rgb_range = rgb.range(), alpha_range = alpha.range();
   for (MeshColor& c : colors) {
     for (std::size_t i = 0; i < 3; ++i)
-      c[i] = std::max(scaled(c[i], wide), 0.0F);
-    c[3] = c[3] < 0 ? 1.0F : scaled(c[3], wide_alpha);
+      c[i] = c[i] < 0 ? 0.0F : c[i] / rgb_range;
+    c[3] = c[3] < 0 ? 1.0F : c[3] / alpha_range;
   }
 }
 

@@ -150,7 +150,8 @@ void mend_attributes(FileMesh& mesh, MeshReport& report) {
     }
     if (!mesh.colors.empty() && !is_finite(mesh.colors[v])) {
       bad = true;
-      mesh.colors[v] = {};
+      for (float& component : mesh.colors[v])
+        if (!std::isfinite(component)) component = 0;
     }
     if (bad) ++report.bad_attributes;
   }

@@ -45,8 +45,9 @@ bool is_off(std::string_view bytes);
 /// Triangulates, and mends what MeshReport lists. Throws Error(asset) where no triangle is left.
 Model mend(Polygons polygons, const std::string& name, Winding winding);
 
-/// Colours of a file whose type does not tell their range: some value above 1 says that they run to
-/// 255, alpha by its own. An alpha that is not there becomes 1.
+/// Colours of a file whose type does not tell their range: up to 1, or up to 16 with fractions, they
+/// are shares of light as they stand; else they run to 255, or to 65535 where some value is above
+/// 255. Alpha by its own values; one that is not there becomes 1.
 void unit_colors(std::vector<MeshColor>& colors);
 
 /// Gives each corner that has a uv or a colour of its own a vertex of its own, so that both stand at

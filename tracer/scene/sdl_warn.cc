@@ -62,13 +62,16 @@ void warn_of_materials(const Scene& scene) {
 
 void warn_of_environment(const Scene& environment, const std::string& name) {
   if (!gives_light(environment)) warn(fmt::format("{}: nothing in it gives light", name));
-  const Search uvs(environment, reads_uvs);
+  const Search uvs(environment, reads_uvs), colors(environment, reads_colors);
   for (const Object& object : environment.objects) {
     const std::string& material =
         environment.materials[static_cast<std::size_t>(object.material)].name;
     if (object.mesh.uvs.empty() && uvs.material(object.material))
       warn(fmt::format("{}: object {} has no uv, which its material {} reads", name, object.name,
                        material));
+    if (object.mesh.colors.empty() && colors.material(object.material))
+      warn(fmt::format("{}: object {} has no colours but white, which its material {} reads", name,
+                       object.name, material));
   }
 }
 

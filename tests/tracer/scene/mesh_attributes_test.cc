@@ -93,6 +93,29 @@ TEST(PlyReader, ReadsColoursOfVertices) {
     }
 }
 
+TEST(PlyReader, ColoursWithoutARangeOfTheirTypeTellIt) {
+  // What the first vertex' red and alpha are, for a file whose greatest value is `most`.
+  const auto first = [](const char* type, const char* red, const char* most, const char* alpha) {
+    std::string head, body;
+    for (const char* name : {"red", "green", "blue", "alpha"})
+      head += fmt::format("property {} {}\n", type, name);
+    for (const char* point : {"0 0 0", "1 0 0", "2 0 0", "0 1 0", "1 1 0", "2 1 0"})
+      body += fmt::format("{} {} 0 0 {}\n", point, point[0] == '0' ? red : most, alpha);
+    const MeshColor c =
+        colors_by_x(parse_model(squares(head, "", body + "4 0 1 4 3\n4 1 2 5 4\n"), "m")).at(0);
+    return std::pair{c[0], c[3]};
+  };
+  // A little or much brighter than white, as floats may be, is no colour of 0 .. 255.
+  EXPECT_EQ(first("float", "0.5", "1.00001", "1"), (std::pair{0.5F, 1.0F}));
+  EXPECT_EQ(first("double", "0.5", "12.5", "1"), (std::pair{0.5F, 1.0F}));
+  EXPECT_EQ(first("float", "51", "255", "0.25"), (std::pair{0.2F, 0.25F}));
+  EXPECT_EQ(first("float", "25.5", "200.5", "255"), (std::pair{0.1F, 1.0F}));
+  EXPECT_EQ(first("int", "1", "2", "51"), (std::pair{1 / 255.0F, 0.2F}));
+  EXPECT_EQ(first("uint", "13107", "65535", "65535"), (std::pair{0.2F, 1.0F}));
+  // What is no number is 0, alone.
+  EXPECT_EQ(first("float", "0.5", "1", "nan"), (std::pair{0.5F, 0.0F}));
+}
+
 /// Of each triangle, which all three corners must have.
 std::vector<MeshColor> triangle_colors(const Model& model) {
   std::vector<MeshColor> colors;
