@@ -45,7 +45,7 @@ class ProbeBuild {
   ProbeBuild(const Recipe& recipe, int spp, std::optional<ErrorTarget> target,
              const std::vector<ImageSpec>& images, Inputs& inputs, Renderer& renderer,
              const std::filesystem::path& folder)
-      : plan_(plan_of(recipe, spp, std::move(target), images, inputs, folder)),
+      : plan_(plan_of(recipe, spp, target, images, inputs, folder)),
         maker_(
             dataset_, inputs, plan_.texts, disk_,
             [&renderer] { return std::make_unique<SharedRenderer>(renderer); }, Placing::share) {}
@@ -82,7 +82,7 @@ class ProbeBuild {
                const std::filesystem::path& folder) {
     dataset_.recipe = recipe;
     dataset_.recipe.engine.spp = spp;
-    dataset_.recipe.engine.target = std::move(target);
+    dataset_.recipe.engine.target = target;
     // Identities do not depend on the other models: these alone expand to the same images.
     std::set<std::filesystem::path> models;
     for (const ImageSpec& image : images)
@@ -103,7 +103,7 @@ class ProbeBuild {
     if (found->error) throw *found->error;
     return *found;
   }
-  Product product(Hash128 key) {
+  Product product(Hash128 key) const {
     const std::optional<Product> found = dataset_.database->find_product(key);
     DS_ASSERT(found.has_value());
     return *found;

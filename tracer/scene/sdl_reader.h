@@ -129,9 +129,8 @@ class SdlNode {
   const Property* use(std::string_view property) const;
   const SdlParameter& parameter(std::string_view property) const;
   /// "wanted ..., found ...", with what a misspelt choice may mean.
-  void refuse(const SdlParameter& parameter, const Property& found) const;
-  std::optional<std::vector<double>> numbers(const SdlParameter& parameter,
-                                             std::size_t count) const;
+  void refuse(const SdlParameter& wanted, const Property& found) const;
+  std::optional<std::vector<double>> numbers(const SdlParameter& wanted, std::size_t count) const;
   std::vector<double> numbers_or_default(std::string_view property, std::size_t count) const;
   void refuse_type(std::string_view type) const;
   void miss_named(std::string_view property, SdlKind kind, const std::string& found,
