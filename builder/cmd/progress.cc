@@ -6,6 +6,7 @@
 #include "tracer/base/text_width.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ds {
 namespace {
@@ -24,7 +25,7 @@ std::string format_samples(std::uint64_t samples) {
 }
 
 std::string format_duration(double seconds) {
-  const auto whole = static_cast<std::uint64_t>(seconds + 0.5);
+  const auto whole = static_cast<std::uint64_t>(std::llround(seconds));
   const std::uint64_t hours = whole / 3600, minutes = whole / 60 % 60;
   if (hours > 0) return fmt::format("{}:{:02}:{:02}", hours, minutes, whole % 60);
   return fmt::format("{}:{:02}", minutes, whole % 60);

@@ -85,19 +85,24 @@ class Walk {
         positionals_.push_back(word);
       else if (word == "--")
         only_positionals = true;
-      else if (word.starts_with("--"))
-        long_option(word);
-      else if (looks_like_option(word))
-        short_options(word);
-      else if (verb_ == nullptr)
-        take_verb(word);
       else
-        positionals_.push_back(word);
+        take(word);
     }
     check_positionals();
   }
 
  private:
+  void take(const std::string& word) {
+    if (word.starts_with("--"))
+      long_option(word);
+    else if (looks_like_option(word))
+      short_options(word);
+    else if (verb_ == nullptr)
+      take_verb(word);
+    else
+      positionals_.push_back(word);
+  }
+
   void take_verb(const std::string& word) {
     const std::vector<std::string_view> names = verb_names();
     if (std::find(names.begin(), names.end(), word) == names.end()) refuse_verb(word);

@@ -120,7 +120,7 @@ bool Program::from_cache() const {
 
 void Kernel::set(unsigned index, const Buffer& buffer) {
   DS_ASSERT(state_ && buffer.state_);
-  const cl_mem memory = buffer.state_->memory.get();
+  cl_mem memory = buffer.state_->memory.get();
   const cl_int code = clSetKernelArg(state_->kernel.get(), index, sizeof(cl_mem), &memory);
   if (code != CL_SUCCESS)
     fail(ErrorKind::device,

@@ -129,7 +129,7 @@ std::string SdlNode::choice(std::string_view property) const {
   const SdlParameter& wanted = parameter(property);
   const Property* found = use(property);
   if (!found) return wanted.default_value;
-  const std::string value = joined(*found);
+  std::string value = joined(*found);
   const auto& choices = wanted.choices;
   if (std::find(choices.begin(), choices.end(), value) != choices.end()) return value;
   refuse(wanted, *found);

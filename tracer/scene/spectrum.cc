@@ -3,12 +3,14 @@
 
 #include "tracer/scene/sdl_math.h"
 
+#include <algorithm>
+
 namespace ds {
 namespace {
 
 constexpr double k_first_nm = 382.5;
-constexpr double k_last_nm = 780;
 constexpr double k_step_nm = 5;
+constexpr int k_steps = 80;
 
 /// A Gaussian with one width below its centre and another above.
 double lobe(double x, double centre, double below, double above) {
@@ -32,7 +34,8 @@ double positive(double value) {
 Vec3d spectrum_to_rgb(const std::function<double(double)>& spectrum) {
   Vec3d xyz;
   double luminance = 0;
-  for (double nm = k_first_nm; nm < k_last_nm; nm += k_step_nm) {
+  for (int i = 0; i < k_steps; ++i) {
+    const double nm = k_first_nm + k_step_nm * i;
     const Vec3d matching = color_matching(nm);
     xyz = xyz + matching * spectrum(nm);
     luminance += matching.y;
@@ -57,13 +60,12 @@ Vec3d black_body_color(double kelvin, bool normalize) {
   // agrees within 2 %.
   constexpr double k_normalized_scale = 0.817;
   constexpr double k_absolute_scale = 0.817 * 89160;
+  // 380 to 720 nm
   constexpr double k_first = 380;
-  constexpr double k_last = 720;
+  constexpr int k_count = 69;
   double greatest = 0;
-  for (double nm = k_first; nm <= k_last; nm += k_step_nm) {
-    const double value = black_body_radiance(nm, kelvin);
-    if (value > greatest) greatest = value;
-  }
+  for (int i = 0; i < k_count; ++i)
+    greatest = std::max(greatest, black_body_radiance(k_first + k_step_nm * i, kelvin));
   const Vec3d rgb = spectrum_to_rgb([&](double nm) { return black_body_radiance(nm, kelvin); });
   const double scale = (normalize ? k_normalized_scale : k_absolute_scale) / greatest;
   return {positive(rgb.x) * scale, positive(rgb.y) * scale, positive(rgb.z) * scale};
