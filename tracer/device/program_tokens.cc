@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 namespace ds {
 namespace {
@@ -12,7 +11,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 bool is_word(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || is_digit(c) || c == '_';
 }
 bool is_space(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
@@ -22,13 +21,18 @@ bool is_space(char c) {
 std::string joined_lines(std::string_view source) {
   std::string text;
   text.reserve(source.size());
-  for (std::size_t i = 0; i < source.size(); ++i) {
-    if (source.substr(i, 2) == "\\\n")
-      i += 1;
-    else if (source.substr(i, 3) == "\\\r\n")
-      i += 2;
-    else
-      text += source[i];
+  while (!source.empty()) {
+    const std::size_t at = std::min(source.find('\\'), source.size());
+    text += source.substr(0, at);
+    source.remove_prefix(at);
+    if (source.starts_with("\\\n")) {
+      source.remove_prefix(2);
+    } else if (source.starts_with("\\\r\n")) {
+      source.remove_prefix(3);
+    } else if (!source.empty()) {
+      text += '\\';
+      source.remove_prefix(1);
+    }
   }
   return text;
 }
@@ -55,6 +59,9 @@ std::size_t literal_size(std::string_view text) {
 }
 
 std::size_t punctuator_size(std::string_view text) {
+  // What most are followed by makes none longer.
+  if (text.size() < 2 || std::string_view(".<>-+=&|#").find(text[1]) == std::string_view::npos)
+    return 1;
   // Longest first.
   constexpr std::array<std::string_view, 23> k_long = {
       "...", "<<=", ">>=", "->", "++", "--", "<<", ">>", "<=", ">=", "==", "!=",
@@ -76,6 +83,7 @@ std::size_t token_size(std::string_view text) {
 
 class Spelling {
  public:
+  explicit Spelling(std::size_t most) { text_.reserve(most); }
   void add(std::string_view token, bool starts_directive) {
     if (starts_directive) end_line();
     if (!text_.empty() && text_.back() != '\n' &&
@@ -111,7 +119,7 @@ class Spelling {
 
 std::string program_tokens(std::string_view source) {
   const std::string joined = joined_lines(source);
-  Spelling out;
+  Spelling out(joined.size());
   bool line_start = true, directive = false;
   for (std::string_view rest = joined; !rest.empty();) {
     std::size_t size = 1;
