@@ -319,9 +319,9 @@ bool Execution::take_standing_manifest(const ListedImages& images, const Manifes
 void Execution::finish() {
   if (is_as_planned()) {
     const ListedImages images = look_at_images(*plan_.placed, true);
-    if (take_standing_manifest(
-            images, manifest_sources(dataset_.recipe, plan_, images, *plan_.placed), *plan_.placed))
-      return;
+    auto sources = sources_as_planned(plan_);
+    if (!sources) sources = manifest_sources(plan_, images, *plan_.placed);
+    if (take_standing_manifest(images, *sources, *plan_.placed)) return;
   }
   begin();
   maker_.remember_stamps();
@@ -330,7 +330,7 @@ void Execution::finish() {
   if (!cut_short()) remove_left_over();
   PlacedFiles placed(dataset_);
   const ListedImages images = look_at_images(placed, false);
-  ManifestSources sources = manifest_sources(dataset_.recipe, plan_, images, placed);
+  ManifestSources sources = manifest_sources(plan_, images, placed);
   if (!take_standing_manifest(images, sources, placed)) write_manifest(images, sources, placed);
 }
 

@@ -75,7 +75,7 @@ SolePlan make_sole_plan(Dataset& dataset, Stamps stamps, bool force, Shard shard
   const auto plan = [&] {
     sole.inputs = std::make_unique<Inputs>(*dataset.database, stamps);
     sole.plan = make_plan(dataset, *sole.inputs, force, shard);
-    return what_is_made(dataset.recipe, sole.plan);
+    return what_is_made(sole.plan);
   };
   std::string told;
   for (;;) {

@@ -18,6 +18,8 @@ namespace fs = std::filesystem;
 
 /// Names a licence of a folder's files may have.
 constexpr const char* k_names[] = {"LICENSE", "LICENCE", "LICENSE.txt", "LICENCE.txt", "COPYING"};
+/// The kind of asset that is a folder.
+constexpr std::string_view k_environments = "environments";
 /// The longest licences in use have 50 kB.
 constexpr std::uintmax_t k_most_bytes = 1U << 20U;
 
@@ -51,9 +53,8 @@ std::vector<std::pair<std::string, std::string>> licences_beside(
   // One look a folder: there may be thousands of models.
   std::map<fs::path, std::optional<std::string>> known;
   std::vector<std::pair<std::string, std::string>> licences;
-  std::error_code error;
+  const bool is_folder = kind == k_environments;
   for (const fs::path& asset : assets) {
-    const bool is_folder = fs::is_directory(asset, error);
     const fs::path folder = is_folder ? asset : asset.parent_path();
     const auto [entry, is_new] = known.try_emplace(folder);
     if (is_new) entry->second = licence_near(folder, is_folder);

@@ -50,7 +50,7 @@ void add_word(HashStream& hash, const std::string& word) {
   hash.add({word.c_str(), word.size() + 1});  // its end is the mark between it and the next
 }
 
-Hash128 labels_of(DatasetRecord record, const Plan& plan) {
+Hash128 hash_of_labels(DatasetRecord record, const Plan& plan) {
   record.dsbuild_version.clear();
   HashStream hash;
   hash.add(to_json(record));
@@ -235,11 +235,18 @@ std::vector<std::string> differences(const Dataset& dataset, const Plan& plan, b
 
 }  // namespace
 
-ManifestSources manifest_sources(const Recipe& recipe, const Plan& plan, const ListedImages& images,
+PlanLabels labels_of(const Recipe& recipe, const Plan& plan) {
+  try {
+    return {hash_of_labels(description(recipe, plan), plan), std::nullopt};
+  } catch (const Error& error) {
+    return {hash_text(error.what()), error};
+  }
+}
+
+ManifestSources manifest_sources(const Plan& plan, const ListedImages& images,
                                  const PlacedFiles& placed) {
-  ManifestSources sources;
-  sources.labels = labels_of(description(recipe, plan), plan);
-  sources.program = hash_text(program_version());
+  if (plan.labels.error) throw *plan.labels.error;
+  ManifestSources sources{{}, plan.labels.hash, hash_text(program_version())};
   HashStream listing;
   listing.add(sources.labels);
   for (const PlannedImage* image : images.made) {
@@ -255,13 +262,14 @@ ManifestSources manifest_sources(const Recipe& recipe, const Plan& plan, const L
   return sources;
 }
 
-Hash128 what_is_made(const Recipe& recipe, const Plan& plan) {
+std::optional<ManifestSources> sources_as_planned(const Plan& plan) {
+  if (!plan.manifest.listing) return std::nullopt;
+  return ManifestSources{*plan.manifest.listing, plan.labels.hash, hash_text(program_version())};
+}
+
+Hash128 what_is_made(const Plan& plan) {
   HashStream hash;
-  try {
-    hash.add(labels_of(description(recipe, plan), plan));
-  } catch (const Error& error) {
-    hash.add(error.what());
-  }
+  hash.add(plan.labels.hash);
   for (const PlannedImage& image : plan.images) {
     hash.add(image.keys.render);
     hash.add(image.keys.files);
@@ -315,16 +323,17 @@ ManifestState manifest_state(const Dataset& dataset, const Plan& plan, const Pla
   if (!state.behind.empty()) return state;
   ManifestSources sources;
   try {
-    sources = manifest_sources(dataset.recipe, plan, images, placed);
+    sources = manifest_sources(plan, images, placed);
   } catch (const Error& error) {  // a licence that cannot be read: no reason to plan nothing
     state.behind.emplace_back(error.what());
     return state;
   }
+  if (!any_stale && all_known) state.listing = sources.listing;
   if (placed.find(k_checksums_file)->product != sources.program)
     state.older_program = older_program(dataset.folder);
   if (placed.find(k_dataset_file)->product != sources.labels)
     state.behind = differences(dataset, plan, any_stale);
-  else if (!any_stale && all_known && placed.find(k_images_file)->product != sources.listing)
+  else if (state.listing && placed.find(k_images_file)->product != sources.listing)
     state.behind.push_back("the list of images");
   return state;
 }

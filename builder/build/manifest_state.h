@@ -4,6 +4,7 @@
 #include "builder/build/placed_files.h"
 #include "builder/build/plan.h"
 
+#include <optional>
 #include <vector>
 
 namespace ds {
@@ -23,14 +24,21 @@ struct ListedImages {
   std::vector<const PlannedImage*> lacking;  ///< the others: listed as the manifest before had them
 };
 
+/// Of a plan but for its `labels` and `manifest`.
+PlanLabels labels_of(const Recipe& recipe, const Plan& plan);
+
 /// Lines taken over from the manifest before count by the bytes that are in their files' places: a
-/// manifest that stands and was written from the same sources would be written again.
-ManifestSources manifest_sources(const Recipe& recipe, const Plan& plan, const ListedImages& images,
+/// manifest that stands and was written from the same sources would be written again. Throws what
+/// kept the plan's labels from being known.
+ManifestSources manifest_sources(const Plan& plan, const ListedImages& images,
                                  const PlacedFiles& placed);
+
+/// The same where every image of the dataset is made as the plan found it; nothing where not.
+std::optional<ManifestSources> sources_as_planned(const Plan& plan);
 
 /// Hash of what a build of the plan makes of the folder: which images of which keys and labels. The
 /// same for all shards, and whether they are made or not.
-Hash128 what_is_made(const Recipe& recipe, const Plan& plan);
+Hash128 what_is_made(const Plan& plan);
 
 /// Whether the three files stand as they were written from these sources.
 bool manifest_stands(const Dataset& dataset, const ManifestSources& sources,

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/build/placed_files.h"
 
+#include "tracer/base/error.h"
 #include "tracer/base/files.h"
 #include "tracer/base/hash_stream.h"
 
 #include <algorithm>
 #include <fcntl.h>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <unistd.h>
 
@@ -26,13 +28,21 @@ PlacedFiles::PlacedFiles(Dataset& dataset, Stamps stamps)
   rows_.reserve(image_count(dataset.recipe) * output_paths(dataset.recipe.outputs, "").size() +
                 k_manifest_rows);
   dataset.database->visit_placed(dataset.row.id, [&](const PlacedView& row) {
+    DS_ASSERT(names_.size() <= std::numeric_limits<std::uint32_t>::max());
     rows_.push_back({hash_text(row.path), hash_text(row.image), row.product, row.object, row.stamp,
-                     row.kind == k_manifest_kind});
+                     static_cast<std::uint32_t>(names_.size()), row.kind == k_manifest_kind});
+    names_.append(row.path).push_back('\0');
   });
   by_path_ = HashIndex(rows_.size(), [&](std::size_t i) { return rows_[i].path; });
+  if (stamps_ != Stamps::trust) return;
+  ahead_ = std::make_unique<StampsAhead>(folder_, rows_.size(), [this](std::size_t i) {
+    const Row& row = rows_[i];
+    return StampsAhead::File{names_.c_str() + row.name, row.stamp ? &*row.stamp : nullptr};
+  });
 }
 
 PlacedFiles::~PlacedFiles() {
+  ahead_.reset();
   if (folder_ >= 0) ::close(folder_);
 }
 
@@ -45,13 +55,21 @@ const PlacedFiles::Row* PlacedFiles::find(std::string_view path) const {
   return row ? &rows_[*row] : nullptr;
 }
 
+/// The stamp of the file that lies there now; the row's where that was seen to be so already.
+std::optional<FileStamp> PlacedFiles::look_at(const Row* placed, const std::string& path) const {
+  if (folder_ < 0) return std::nullopt;
+  if (placed != nullptr && ahead_ &&
+      ahead_->is_known(static_cast<std::size_t>(placed - rows_.data())))
+    return placed->stamp;
+  return stamp_in(folder_, path.c_str());
+}
+
 std::string PlacedFiles::why_not_in_place(const std::string& image_id, const OutputFile& output) {
   const Row* placed = find(output.path);
   if (placed == nullptr || placed->image != hash_text(image_id))
     return output.path + " was never made";
   if (placed->product != output.key) return output.path + " is of an older key";
-  const std::optional<FileStamp> stamp =
-      folder_ >= 0 ? stamp_in(folder_, output.path.c_str()) : std::nullopt;
+  const std::optional<FileStamp> stamp = look_at(placed, output.path);
   if (!stamp) return output.path + " is missing";
   if (placed->stamp == stamp && stamps_ == Stamps::trust) return "";
   const std::filesystem::path file = dataset_.folder / output.path;
@@ -74,10 +92,9 @@ bool PlacedFiles::all_in_place(const std::string& image_id,
 }
 
 std::optional<Hash128> PlacedFiles::bytes_in_place(const std::string& path) const {
-  const std::optional<FileStamp> stamp =
-      folder_ >= 0 ? stamp_in(folder_, path.c_str()) : std::nullopt;
-  if (!stamp) return std::nullopt;
   const Row* placed = find(path);
+  const std::optional<FileStamp> stamp = look_at(placed, path);
+  if (!stamp) return std::nullopt;
   if (placed != nullptr && placed->stamp == stamp && stamps_ == Stamps::trust)
     return placed->object;
   return content_hash(dataset_.folder / path);

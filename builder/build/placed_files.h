@@ -4,8 +4,12 @@
 #include "builder/build/dataset.h"
 #include "builder/build/hash_index.h"
 #include "builder/build/plan.h"
+#include "builder/db/stamps_ahead.h"
 #include "manifests/manifest.h"
 
+#include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,13 +17,15 @@
 namespace ds {
 
 /// The files that builds put into a dataset's folder: as the database knew them when this was made,
-/// and as they lie on the disk when it is asked. 100 bytes a file: there may be 100,000.
+/// and as they lie on the disk. A file is looked at once, between when this was made and when it is
+/// first asked for. 150 bytes a file: there may be 100,000.
 class PlacedFiles {
  public:
   /// What the database knew of a file; path and image by their hashes.
   struct Row {
     Hash128 path, image, product, object;
     std::optional<FileStamp> stamp;
+    std::uint32_t name = 0;  ///< where the path starts in `names_`
     bool of_manifest = false;
   };
 
@@ -52,13 +58,16 @@ class PlacedFiles {
 
  private:
   std::optional<std::size_t> find_row(std::string_view path) const;
+  std::optional<FileStamp> look_at(const Row* placed, const std::string& path) const;
 
   Dataset& dataset_;
   Stamps stamps_;
   int folder_;  ///< descriptor; -1 where there is no folder
   std::vector<Row> rows_;
+  std::string names_;  ///< the paths, each with a 0 behind it
   HashIndex by_path_;
   std::vector<PlacedFile> restamped_;
+  std::unique_ptr<StampsAhead> ahead_;  ///< the last member: its thread reads the others
 };
 
 }  // namespace ds

@@ -256,6 +256,7 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
   plan.forgets = planner.forgets();
   plan.unphysical = count_unphysical(plan.images, inputs);
   snapshot.reset();
+  plan.labels = labels_of(dataset.recipe, plan);
   plan.manifest = manifest_state(dataset, plan, *plan.placed);
   inputs.remember();
   plan.placed->remember_stamps();

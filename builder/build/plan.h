@@ -64,8 +64,16 @@ struct MendedModel {
 struct ManifestState {
   std::vector<std::string> behind;  ///< each what is behind: "class_path of 4 images: car -> van"
   std::string older_program;        ///< the version that wrote it, where that is another one
+  /// ManifestSources::listing, where every image of the dataset is made.
+  std::optional<Hash128> listing;
 
   bool current() const { return behind.empty() && older_program.empty(); }
+};
+
+/// Hash of what dataset.json says and of the labels of the plan's images, or why there is none.
+struct PlanLabels {
+  Hash128 hash;
+  std::optional<Error> error;
 };
 
 /// A build, before anything is done. A pure reading of recipe, files and database, but for
@@ -76,6 +84,7 @@ struct Plan {
                                        ///< names any more or whose picture is refused; relative to
                                        ///< the folder
   bool forgets = false;                ///< the database knows images that the recipe has no more
+  PlanLabels labels;
   ManifestState manifest;
   TextSet texts;
   std::shared_ptr<PlacedFiles> placed;        ///< as the plan found them; refers to the dataset

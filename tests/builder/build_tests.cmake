@@ -1,5 +1,5 @@
 ds_test(db_test
-  SOURCES db_database_test.cc db_sqlite_test.cc
+  SOURCES db_database_test.cc db_sqlite_test.cc stamps_ahead_test.cc
   LIBS ds_db)
 target_link_libraries(db_test PRIVATE PkgConfig::SQLITE)
 ds_test(build_test
