@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "builder/build/dataset.h"
+#include "builder/store/dataset.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "builder/build/execute.h"
-#include "builder/build/folder_lock.h"
-#include "builder/build/lacking.h"
 #include "builder/cmd/concerns_text.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/progress.h"
 #include "builder/cmd/stop_signal.h"
 #include "builder/cmd/verbs.h"
+#include "builder/make/execute.h"
+#include "builder/make/sole_plan.h"
+#include "builder/plan/lacking.h"
 #include "tracer/base/log.h"
 #include "tracer/base/streams.h"
 

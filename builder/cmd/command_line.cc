@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/command_line.h"
 
-#include "builder/build/dataset_manifest.h"
+#include "builder/plan/dataset_manifest.h"
 #include "tracer/base/error.h"
 #include "tracer/base/streams.h"
 #include "tracer/device/opencl.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/effects_text.h"
 
-#include "builder/build/keys.h"
+#include "builder/plan/keys.h"
 #include "tracer/base/streams.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "builder/build/plan.h"
+#include "builder/plan/plan.h"
 #include "tracer/device/effects.h"
 
 #include <nlohmann/json.hpp>

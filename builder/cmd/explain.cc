@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "builder/build/plan.h"
 #include "builder/cmd/effects_text.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/verbs.h"
+#include "builder/plan/plan.h"
 #include "manifests/manifest.h"
 #include "tracer/base/canonical.h"
 #include "tracer/base/nearest.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "builder/build/dataset.h"
-#include "builder/build/killed_builds.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/progress.h"
 #include "builder/cmd/verbs.h"
+#include "builder/store/dataset.h"
+#include "builder/store/killed_builds.h"
 #include "tracer/base/streams.h"
 
 namespace ds {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "builder/build/plan.h"
+#include "builder/plan/plan.h"
 
 #include "builder/cmd/forecast_text.h"
 #include "builder/cmd/plan_text.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "builder/build/plan.h"
 #include "builder/cmd/arguments.h"
+#include "builder/plan/plan.h"
 #include "tracer/base/streams.h"
 
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "builder/build/verify.h"
+#include "builder/make/verify.h"
 
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/stop_signal.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/report/accuracy.h"
 
-#include "builder/build/keys.h"
+#include "builder/plan/keys.h"
 #include "builder/report/choice_costs.h"
 #include "builder/report/flip.h"
 #include "builder/report/ladder.h"

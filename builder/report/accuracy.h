@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "builder/build/inputs.h"
+#include "builder/plan/inputs.h"
 #include "builder/recipe/recipe.h"
 #include "builder/report/choices.h"
 #include "builder/report/effect_choices.h"

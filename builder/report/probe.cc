@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/report/probe.h"
 
-#include "builder/build/image_maker.h"
+#include "builder/make/image_maker.h"
 #include "tracer/base/error.h"
 #include "tracer/base/hash.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "builder/build/plan.h"
-#include "builder/build/renderer.h"
+#include "builder/make/renderer.h"
+#include "builder/plan/plan.h"
 
 #include <atomic>
 #include <cstdint>

@@ -4,7 +4,7 @@
 // file, row and record of it written by the builder itself.
 //
 //   fake_build RECIPE FOLDER
-#include "builder/build/execute.h"
+#include "builder/make/execute.h"
 #include "tests/builder/fake_renderer.h"
 #include "tracer/base/error.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "builder/build/renderer.h"
+#include "builder/make/renderer.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
 #include "tracer/base/hash.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "builder/build/execute.h"
+#include "builder/make/execute.h"
 #include "tests/builder/fake_renderer.h"
 #include "tracer/base/files.h"
 

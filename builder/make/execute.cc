@@ -1,0 +1,404 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/make/execute.h"
+
+#include "builder/make/older_records.h"
+#include "builder/plan/dataset_concerns.h"
+#include "builder/plan/dataset_manifest.h"
+#include "builder/plan/manifest_state.h"
+#include "builder/plan/placed_files.h"
+#include "builder/store/host.h"
+#include "builder/store/killed_builds.h"
+#include "tracer/base/disk_error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <thread>
+#include <tuple>
+#include <unistd.h>
+#include <vector>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// How long to sleep where every image left is being made by other processes.
+constexpr std::chrono::milliseconds k_claim_poll{50};
+
+/// The first image of each kind that can need a program of its own: the features of its scene
+/// depend on material and environment, not on the model.
+std::vector<const ImageSpec*> one_of_each_kind(const std::deque<const PlannedImage*>& queue) {
+  std::set<std::tuple<fs::path, fs::path, bool, MathMode>> kinds;
+  std::vector<const ImageSpec*> first;
+  for (const PlannedImage* image : queue) {
+    const ImageSpec& spec = image->spec;
+    if (image->trace_film && kinds
+                                 .emplace(spec.material_file, spec.environment_folder,
+                                          spec.camera.lens_radius_m > 0, spec.engine.math)
+                                 .second)
+      first.push_back(&spec);
+  }
+  return first;
+}
+
+/// Whether a line taken over from the manifest before is one that the next build may leave out
+/// though nothing changed: of an image, or with a file, that the recipe does not have.
+bool is_left_over(const ImageRecord& record, const std::set<std::string_view>& planned,
+                  const OutputSettings& outputs) {
+  if (!planned.contains(record.id)) return true;
+  const std::vector<std::string> wanted = output_paths(outputs, record.id);
+  return std::any_of(record.files.begin(), record.files.end(), [&](const FileRecord& file) {
+    return std::find(wanted.begin(), wanted.end(), file.path) == wanted.end();
+  });
+}
+
+class Execution {
+ public:
+  Execution(Dataset& dataset, const Plan& plan, Inputs& inputs, const BuildOptions& options,
+            Disk& disk, const RendererFactory& factory, BuildObserver& observer,
+            const std::atomic<bool>& stop)
+      : dataset_(dataset),
+        plan_(plan),
+        options_(options),
+        disk_(disk),
+        observer_(observer),
+        stop_(stop),
+        maker_(dataset, inputs, plan.texts, disk, factory,
+               options.copy ? Placing::copy : Placing::share) {}
+
+  BuildResult run();
+
+ private:
+  using Queue = std::deque<const PlannedImage*>;
+
+  void enter_dataset();
+  Queue sort_images();
+  void make_all(Queue queue);
+  bool make_one(const PlannedImage& image);
+  void fail_image(const PlannedImage& image, const std::string& why);
+  void collect_failures();
+  bool is_as_planned() const;
+  bool is_in_place(PlacedFiles& placed, const PlannedImage& image);
+  ListedImages look_at_images(PlacedFiles& placed, bool as_planned);
+  void find_capped(const ListedImages& images);
+  bool take_standing_manifest(const ListedImages& images, const ManifestSources& sources,
+                              const PlacedFiles& placed);
+  void write_manifest(const ListedImages& images, ManifestSources sources, PlacedFiles& placed);
+  bool anything_to_do() const;
+  void begin();
+  void finish();
+  void remove_left_over();
+  void log();
+  /// Whether no further image is made.
+  bool cut_short() const {
+    return stop_ || disk_failed_ || (result_.failed > 0 && !options_.keep_going);
+  }
+
+  Dataset& dataset_;
+  const Plan& plan_;
+  BuildOptions options_;
+  Disk& disk_;
+  BuildObserver& observer_;
+  const std::atomic<bool>& stop_;
+  ImageMaker maker_;
+  BuildResult result_;
+  std::map<std::string, std::vector<std::string>> failures_;  ///< image ids by what went wrong
+  bool disk_failed_ = false;
+  std::string no_device_;  ///< why nothing can be traced
+  std::int64_t build_number_ = 0;
+};
+
+void Execution::fail_image(const PlannedImage& image, const std::string& why) {
+  ++result_.failed;
+  failures_[why].push_back(image.spec.id);
+  observer_.image_failed(image, why);
+}
+
+/// With the recipe and overrides that are built now.
+void Execution::enter_dataset() {
+  const Claims::Claim claim = dataset_.claims->own_datasets();
+  const auto row = dataset_.database->find_dataset(dataset_.row.id);
+  if (row) dataset_.row.manifest = row->manifest;
+  if (row != dataset_.row) dataset_.database->put_dataset(dataset_.row);
+}
+
+/// Whether files, or what the database has of images, may come to be others.
+bool Execution::anything_to_do() const {
+  return options_.copy || !plan_.to_remove.empty() || plan_.forgets || !plan_.manifest.current() ||
+         std::any_of(plan_.images.begin(), plan_.images.end(),
+                     [](const PlannedImage& image) { return image.stale() || image.record; });
+}
+
+/// Enters the build before it writes any file, so that another one sees where this one is killed.
+void Execution::begin() {
+  if (build_number_ != 0) return;
+  build_number_ = dataset_.database->begin_build(dataset_.row.id, host_name(), ::getpid());
+}
+
+/// Counts the shard's images and those that need nothing, enters failures, and returns what is to
+/// be made, images of one scene together.
+Execution::Queue Execution::sort_images() {
+  Queue queue;
+  for (const PlannedImage& image : plan_.images) {
+    if (image.elsewhere) continue;
+    ++result_.images;
+    if (image.error) {
+      fail_image(image, image.error->what());
+    } else if (image.stale()) {
+      if (options_.copy) maker_.part_from_store(image);
+      queue.push_back(&image);
+    } else {
+      ++result_.reused;
+      if (image.record) maker_.record(image);
+      if (options_.copy) maker_.part_from_store(image);
+    }
+  }
+  std::stable_sort(queue.begin(), queue.end(), [](const PlannedImage* a, const PlannedImage* b) {
+    const auto scene = [](const ImageSpec& spec) {
+      return std::tie(spec.model_file, spec.material_file, spec.environment_folder);
+    };
+    return scene(a->spec) < scene(b->spec);
+  });
+  return queue;
+}
+
+/// False where another process is making the image now.
+bool Execution::make_one(const PlannedImage& image) {
+  const auto claim = dataset_.claims->try_image(image.keys.render);
+  if (!claim) return false;
+  observer_.image_started(image);
+  try {
+    const ImageWork work = maker_.make(
+        image, options_.force,
+        [&](const TraceProgress& progress) { observer_.progress(image, progress); }, stop_);
+    ++result_.built;
+    result_.traced += work.traced ? 1U : 0U;
+    result_.developed += work.developed ? 1U : 0U;
+    result_.traced_samples += work.samples;
+    observer_.image_done(image, work);
+  } catch (const DamagedDatabase&) {
+    throw;
+  } catch (const DiskFailed& error) {
+    // What it refuses one image it refuses the rest: tracing them would be for nothing.
+    disk_failed_ = true;
+    fail_image(image, error.what());
+  } catch (
+      const NoDevice& error) {  // said of the build, not of the image that happened to be first
+    ++result_.failed;
+    no_device_ = error.what();
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::cancelled) fail_image(image, error.what());
+  }
+  return true;
+}
+
+void Execution::make_all(Queue queue) {
+  std::uint64_t samples = 0;
+  for (const PlannedImage* image : queue)
+    samples += image->trace_film ? image->samples() : 0;
+  observer_.started(queue.size(), samples);
+  maker_.announce(one_of_each_kind(queue));
+  std::size_t put_back = 0;  // images in a row that others are making
+  while (!queue.empty() && !cut_short()) {
+    const PlannedImage* image = queue.front();
+    queue.pop_front();
+    if (make_one(*image)) {
+      put_back = 0;
+      continue;
+    }
+    queue.push_back(image);
+    if (++put_back >= queue.size()) std::this_thread::sleep_for(k_claim_poll);
+  }
+  result_.stopped = stop_ && !queue.empty();
+}
+
+void Execution::collect_failures() {
+  if (!no_device_.empty()) result_.failures.emplace_back("tracing", no_device_);
+  for (const auto& [why, ids] : failures_) {
+    const std::string what =
+        ids.size() == 1 ? ids.front() : fmt::format("{} images, {} ...", ids.size(), ids.front());
+    result_.failures.emplace_back(what, why);
+  }
+}
+
+void Execution::remove_left_over() {
+  if (plan_.to_remove.empty() && !plan_.forgets) return;
+  Database& database = *dataset_.database;
+  std::set<fs::path> folders;
+  std::vector<std::string> removed;
+  for (const std::string& path : plan_.to_remove) {
+    try {
+      disk_.remove(dataset_.folder / path);
+      removed.push_back(path);
+    } catch (const DiskFailed&) {
+      throw;
+    } catch (const Error& error) {  // tried again by the next build, and no reason to end this one
+      result_.failures.emplace_back(path, error.what());
+    }
+    folders.insert((dataset_.folder / path).parent_path());
+  }
+  std::error_code not_empty;
+  for (const fs::path& folder : folders)
+    fs::remove(folder, not_empty);
+  std::set<std::string> wanted;
+  for (const PlannedImage& image : plan_.images)
+    wanted.insert(image.spec.id);
+  Transaction transaction(database.connection());
+  for (const std::string& path : removed)
+    database.remove_placed(dataset_.row.id, path);
+  for (const auto& [id, parts] : database.images(dataset_.row.id))
+    if (!wanted.contains(id)) database.remove_image(dataset_.row.id, id);
+  transaction.commit();
+}
+
+/// Whether all files of the image are as they were placed; not where that cannot be told.
+bool Execution::is_in_place(PlacedFiles& placed, const PlannedImage& image) {
+  try {
+    return placed.all_in_place(image);
+  } catch (const DamagedDatabase&) {
+    throw;
+  } catch (const DiskFailed&) {
+    throw;
+  } catch (const Error& error) {
+    result_.failures.emplace_back(image.spec.id, error.what());
+    return false;
+  }
+}
+
+/// Whether this build changed nothing, and nobody else did since it was planned: then what the plan
+/// found in place is not looked at twice. With `copy` files may have been parted from the store,
+/// which changes their stamps.
+bool Execution::is_as_planned() const {
+  return result_.built == 0 && !options_.copy && plan_.to_remove.empty() && !plan_.forgets &&
+         plan_.manifest.current() && plan_.data_version == dataset_.database->data_version() &&
+         std::none_of(plan_.images.begin(), plan_.images.end(),
+                      [](const PlannedImage& image) { return image.stale() || image.record; });
+}
+
+/// Tells apart the images whose files are in place. `as_planned`: those of other shards only are
+/// looked at.
+ListedImages Execution::look_at_images(PlacedFiles& placed, bool as_planned) {
+  ListedImages images;
+  for (const PlannedImage& image : plan_.images) {
+    const bool known = as_planned && !image.elsewhere;
+    const bool made = !image.error && (known || is_in_place(placed, image));
+    (made ? images.made : images.lacking).push_back(&image);
+  }
+  return images;
+}
+
+/// The pictures of the shard that are less exact than the recipe wants.
+void Execution::find_capped(const ListedImages& images) {
+  if (!dataset_.recipe.engine.target) return;
+  auto capped = dataset_.database->capped_pictures();
+  std::sort(capped.begin(), capped.end());
+  for (const PlannedImage* image : images.made) {
+    if (image->elsewhere) continue;
+    for (const OutputFile& output : image->keys.outputs) {
+      const auto found =
+          std::lower_bound(capped.begin(), capped.end(), std::pair(output.key, -1.0));
+      if (output.kind == "image" && found != capped.end() && found->first == output.key)
+        result_.capped.emplace_back(image->spec.id, found->second);
+    }
+  }
+}
+
+/// Whether the manifest that stands is the one this build would write; then also what it says.
+bool Execution::take_standing_manifest(const ListedImages& images, const ManifestSources& sources,
+                                       const PlacedFiles& placed) {
+  if (result_.built > 0 || !manifest_stands(dataset_, sources, placed)) return false;
+  result_.concerns = read_dataset_manifest(dataset_.folder).concerns;
+  find_capped(images);
+  return true;
+}
+
+void Execution::finish() {
+  if (is_as_planned()) {
+    const ListedImages images = look_at_images(*plan_.placed, true);
+    auto sources = sources_as_planned(plan_);
+    if (!sources) sources = manifest_sources(plan_, images, *plan_.placed);
+    if (take_standing_manifest(images, *sources, *plan_.placed)) return;
+  }
+  begin();
+  maker_.remember_stamps();
+  // Of builds that end at once, the last to write must have seen what all of them placed.
+  const Claims::Claim claim = dataset_.claims->own_datasets();
+  if (!cut_short()) remove_left_over();
+  PlacedFiles placed(dataset_);
+  const ListedImages images = look_at_images(placed, false);
+  ManifestSources sources = manifest_sources(plan_, images, placed);
+  if (!take_standing_manifest(images, sources, placed)) write_manifest(images, sources, placed);
+}
+
+void Execution::write_manifest(const ListedImages& images, ManifestSources sources,
+                               PlacedFiles& placed) {
+  std::vector<ImageRecord> records;
+  for (const PlannedImage* image : images.made) {
+    ImageRecord& record = records.emplace_back(image_record(*image, *dataset_.database));
+    count_older_pixels(record, *image, dataset_.folder, *dataset_.database);
+  }
+  find_capped(images);
+  const std::size_t made = records.size();
+  add_older_records(records, dataset_, images.lacking, cut_short(), placed);
+  DatasetRecord record = dataset_record(dataset_.recipe, plan_, records);
+  if (records.size() > made)
+    record.counts.emplace_back("of_an_earlier_build", records.size() - made);
+  result_.concerns = record.concerns;
+  ds::write_manifest(dataset_.folder, record, records);
+  std::set<std::string_view> planned;
+  for (const PlannedImage* image : images.lacking)
+    planned.insert(image->spec.id);
+  if (std::any_of(records.begin() + static_cast<std::ptrdiff_t>(made), records.end(),
+                  [&](const ImageRecord& older) {
+                    return is_left_over(older, planned, dataset_.recipe.outputs);
+                  }))
+    sources.listing = {};  // so that it does not stand
+  remember_manifest(dataset_, sources);
+}
+
+void Execution::log() {
+  result_.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - options_.started).count();
+  Transaction transaction(dataset_.database->connection());
+  begin();
+  const char* outcome = result_.stopped ? "stopped" : result_.failures.empty() ? "done" : "failed";
+  dataset_.database->update_build({build_number_, "", "", 0, result_.device, outcome,
+                                   result_.images, result_.built, result_.reused, result_.failed,
+                                   result_.traced_samples, result_.seconds});
+  transaction.commit();
+}
+
+BuildResult Execution::run() {
+  enter_dataset();
+  if (anything_to_do()) begin();
+  clean_up_killed_builds(dataset_, build_number_);
+  make_all(sort_images());
+  collect_failures();
+  result_.not_reached = result_.images - result_.built - result_.reused - result_.failed;
+  result_.device = maker_.device();
+  result_.programs = maker_.programs();
+  try {
+    finish();
+    log();
+  } catch (const DamagedDatabase&) {
+    throw;
+  } catch (const Error& error) {
+    // The images made are recorded; the caller is to learn their counts too.
+    result_.failures.emplace_back("the manifest", error.what());
+  }
+  return result_;
+}
+
+}  // namespace
+
+BuildResult execute(Dataset& dataset, const Plan& plan, Inputs& inputs, const BuildOptions& options,
+                    Disk& disk, const RendererFactory& factory, BuildObserver& observer,
+                    const std::atomic<bool>& stop) {
+  return Execution(dataset, plan, inputs, options, disk, factory, observer, stop).run();
+}
+
+}  // namespace ds

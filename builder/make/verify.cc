@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/make/verify.h"
+
+#include "tracer/base/error.h"
+#include "tracer/base/files.h"
+#include "tracer/base/hash_stream.h"
+#include "tracer/render/develop.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <sstream>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* k_checksums = "manifest/checksums.xxh128";
+
+void check_file(VerifyResult& result, const fs::path& folder, const FileRecord& wanted) {
+  const fs::path file = folder / wanted.path;
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) {
+    result.findings.push_back({Finding::Kind::missing, wanted.path, "the file is missing"});
+    return;
+  }
+  FileHashes found;
+  try {
+    found = hash_file(file);
+  } catch (const Error& error_of_one) {
+    result.findings.push_back({Finding::Kind::changed, wanted.path, error_of_one.what()});
+    return;
+  }
+  if (found.xxh128 == wanted.hashes.xxh128 && found.sha256 == wanted.hashes.sha256 &&
+      found.size_bytes == wanted.hashes.size_bytes)
+    return;
+  const std::string bytes =
+      fmt::format("wanted {} bytes with XXH3-128 {}, found {} with {}", wanted.hashes.size_bytes,
+                  wanted.hashes.xxh128.hex(), found.size_bytes, found.xxh128.hex());
+  try {
+    if (pixel_hash(file) == wanted.pixels)
+      result.findings.push_back(
+          {Finding::Kind::encoding, wanted.path, "the pixels are the same; " + bytes});
+    else
+      result.findings.push_back(
+          {Finding::Kind::changed, wanted.path, "the pixels differ; " + bytes});
+  } catch (const Error&) {
+    result.findings.push_back(
+        {Finding::Kind::changed, wanted.path, "it is no readable image; " + bytes});
+  }
+}
+
+/// The checksum file against itself and the manifest: it is what people without dsbuild check.
+void check_checksums(VerifyResult& result, const fs::path& folder,
+                     const std::map<std::string, Hash128>& listed) {
+  const auto add = [&](const std::string& path, const std::string& what) {
+    result.findings.push_back({Finding::Kind::manifest, path, what});
+  };
+  std::error_code error;
+  if (!fs::is_regular_file(folder / k_checksums, error)) {
+    result.findings.push_back({Finding::Kind::missing, k_checksums, "the file is missing"});
+    return;
+  }
+  std::map<std::string, Hash128> sums;
+  std::istringstream lines(read_text_file(folder / k_checksums));
+  for (std::string line; std::getline(lines, line);) {
+    const std::optional<Hash128> hash = Hash128::from_hex(line.substr(0, 32));
+    if (!hash || line.compare(32, 2, "  ") != 0) {
+      add(k_checksums, "a line is no checksum: " + line);
+      return;
+    }
+    sums.emplace(line.substr(34), *hash);
+  }
+  for (const auto& [path, hash] : listed) {
+    const auto sum = sums.find(path);
+    if (sum == sums.end())
+      add(k_checksums, "it does not list " + path);
+    else if (sum->second != hash)
+      add(k_checksums, "it contradicts images.jsonl on " + path);
+  }
+  for (const auto& [path, hash] : sums) {
+    if (listed.contains(path)) continue;
+    if (!path.starts_with("manifest/"))
+      add(k_checksums, "it lists " + path + ", which images.jsonl does not");
+    else if (!fs::is_regular_file(folder / path, error))
+      result.findings.push_back({Finding::Kind::missing, path, "the file is missing"});
+    else if (content_hash(folder / path) != hash)
+      add(path, "it has another checksum than " + std::string(k_checksums) + " says");
+  }
+}
+
+void find_extra(VerifyResult& result, const fs::path& folder,
+                const std::map<std::string, Hash128>& listed) {
+  const std::set<std::string> own{"manifest/images.jsonl", "manifest/dataset.json", k_checksums};
+  std::vector<std::string> extra;
+  std::error_code error;
+  fs::recursive_directory_iterator entry(folder, error);
+  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+    const std::string path = entry->path().lexically_relative(folder).generic_string();
+    if (path == ".dsbuild") {
+      entry.disable_recursion_pending();
+      continue;
+    }
+    std::error_code vanished;
+    if (!entry->is_directory(vanished) && !own.contains(path) && !listed.contains(path))
+      extra.push_back(path);
+  }
+  if (error)
+    result.findings.push_back(
+        {Finding::Kind::extra, ".", "its folders cannot be listed: " + error.message()});
+  std::sort(extra.begin(), extra.end());
+  for (const std::string& path : extra)
+    result.findings.push_back({Finding::Kind::extra, path, "nothing lists it"});
+}
+
+/// The images to trace again: those of the least hashes, so that one seed chooses the same ones
+/// everywhere.
+std::vector<const PlannedImage*> choose(const Plan& plan, std::uint64_t count, std::uint64_t seed) {
+  std::vector<std::pair<std::uint64_t, const PlannedImage*>> order;
+  for (const PlannedImage& image : plan.images)
+    order.emplace_back(hash64_text(fmt::format("rerender {} {}", seed, image.spec.id)), &image);
+  std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.first, a.second->spec.id) < std::tie(b.first, b.second->spec.id);
+  });
+  order.resize(std::min<std::uint64_t>(order.size(), count));
+  std::vector<const PlannedImage*> chosen;
+  for (const auto& [hash, image] : order)
+    chosen.push_back(image);
+  return chosen;
+}
+
+class Rerender {
+ public:
+  Rerender(const Recipe& recipe, Inputs& inputs, Renderer& renderer, const PlannedImage& image,
+           const std::atomic<bool>& stop)
+      : recipe_(recipe), inputs_(inputs), renderer_(renderer), image_(image), stop_(stop) {}
+
+  std::vector<std::byte> encode(const std::string& kind) {
+    if (kind == "image") {
+      const Film film = renderer_.trace(image_.spec, nullptr, {}, stop_);
+      return encode_png(
+          develop(film, tone_map_of(recipe_, inputs_.environment(image_.spec.environment_folder))));
+    }
+    if (!geometry_) geometry_ = renderer_.trace_geometry(image_.spec);
+    return kind == "mask" ? encode_png(mask_picture(*geometry_)) : encode_depth_exr(*geometry_);
+  }
+
+ private:
+  const Recipe& recipe_;
+  Inputs& inputs_;
+  Renderer& renderer_;
+  const PlannedImage& image_;
+  const std::atomic<bool>& stop_;
+  std::optional<Geometry> geometry_;
+};
+
+void compare_rerendered(VerifyResult& result, Rerender& rerender, const ImageRecord& record) {
+  for (const FileRecord& wanted : record.files) {
+    const std::vector<std::byte> bytes = rerender.encode(wanted.kind);
+    const Hash128 found = hash_bytes(bytes);
+    if (found == wanted.hashes.xxh128) continue;
+    const bool same_pixels = pixel_hash(bytes, wanted.path) == wanted.pixels;
+    result.findings.push_back(
+        {Finding::Kind::rerender, wanted.path,
+         fmt::format("traced again, {}: wanted XXH3-128 {}, found {}",
+                     same_pixels ? "the pixels are the same but the file's bytes differ"
+                                 : "the pixels differ",
+                     wanted.hashes.xxh128.hex(), found.hex())});
+  }
+}
+
+std::map<std::string, ImageRecord> records_by_id(const fs::path& folder) {
+  std::map<std::string, ImageRecord> records;
+  for (ImageRecord& record : read_images_manifest(folder))
+    records.emplace(record.id, std::move(record));
+  return records;
+}
+
+}  // namespace
+
+const char* to_string(Finding::Kind kind) {
+  switch (kind) {
+    case Finding::Kind::missing:
+      return "missing";
+    case Finding::Kind::extra:
+      return "extra";
+    case Finding::Kind::changed:
+      return "changed";
+    case Finding::Kind::encoding:
+      return "encoding";
+    case Finding::Kind::manifest:
+      return "manifest";
+    case Finding::Kind::rerender:
+      return "rerender";
+  }
+  assertion_failed("a Finding::Kind", __FILE__, __LINE__);
+}
+
+VerifyResult verify_files(const fs::path& folder) {
+  VerifyResult result;
+  std::map<std::string, Hash128> listed;
+  for (const ImageRecord& image : read_images_manifest(folder)) {
+    ++result.images;
+    for (const FileRecord& file : image.files) {
+      ++result.files;
+      listed.emplace(file.path, file.hashes.xxh128);
+      check_file(result, folder, file);
+    }
+  }
+  check_checksums(result, folder, listed);
+  find_extra(result, folder, listed);
+  return result;
+}
+
+void verify_against_plan(VerifyResult& result, Dataset& dataset, const Plan& plan) {
+  const auto records = records_by_id(dataset.folder);
+  std::set<std::string> wanted;
+  for (const PlannedImage& image : plan.images) {
+    const std::string& id = image.spec.id;
+    wanted.insert(id);
+    const auto record = records.find(id);
+    if (record == records.end())
+      result.findings.push_back(
+          {Finding::Kind::missing, id, "the recipe names it, the manifest does not"});
+    else if (image.error)
+      result.findings.push_back({Finding::Kind::manifest, id, image.error->what()});
+    else if (record->second.render_key != image.keys.render ||
+             record->second.files_key != image.keys.files)
+      result.findings.push_back({Finding::Kind::manifest, id,
+                                 image.stale()
+                                     ? fmt::format("it is of an older recipe or older assets: {}",
+                                                   fmt::join(image.reasons, "; "))
+                                     : "it is of an older recipe or older assets"});
+  }
+  for (const auto& [id, record] : records)
+    if (!wanted.contains(id))
+      result.findings.push_back(
+          {Finding::Kind::extra, id, "the manifest names it, the recipe does not"});
+  for (const auto& [path, placed] : dataset.database->placed_files(dataset.row.id)) {
+    const fs::path file = dataset.folder / path;
+    if (placed.kind == k_manifest_kind && stamp_of(file) && content_hash(file) != placed.object) {
+      result.findings.push_back(
+          {Finding::Kind::manifest, path, "it is not the one the last build wrote"});
+      return;
+    }
+  }
+  for (const std::string& what : plan.manifest.behind)
+    result.findings.push_back({Finding::Kind::manifest, "manifest", "it is behind: " + what});
+}
+
+void verify_by_tracing(VerifyResult& result, Dataset& dataset, const Plan& plan, Inputs& inputs,
+                       Renderer& renderer, std::uint64_t count, std::uint64_t seed,
+                       const std::function<void(const std::string& id)>& told,
+                       const std::atomic<bool>& stop) {
+  const auto records = records_by_id(dataset.folder);
+  for (const PlannedImage* image : choose(plan, count, seed)) {
+    const auto record = records.find(image->spec.id);
+    if (record == records.end() || image->error) continue;  // reported by verify_against_plan
+    told(image->spec.id);
+    Rerender rerender(dataset.recipe, inputs, renderer, *image, stop);
+    compare_rerendered(result, rerender, record->second);
+    ++result.rerendered;
+  }
+}
+
+}  // namespace ds

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/make/renderer.h"
+#include "builder/plan/plan.h"
+#include "manifests/manifest.h"
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ds {
+
+/// One thing that is not as the manifest says.
+struct Finding {
+  enum class Kind {
+    missing,   ///< a listed file, or an image of the recipe, is not there
+    extra,     ///< a file nothing lists
+    changed,   ///< other bytes and other pixels
+    encoding,  ///< other bytes, but the same pixels: another encoder, or metadata was added
+    manifest,  ///< the manifest contradicts itself or what was built
+    rerender,  ///< tracing again gives something else
+  };
+  Kind kind;
+  std::string path;  ///< relative to the dataset's folder, or an image's id
+  std::string what;
+};
+const char* to_string(Finding::Kind kind);
+
+struct VerifyResult {
+  std::uint64_t images = 0, files = 0, rerendered = 0;
+  std::vector<Finding> findings;
+};
+
+/// Reads every file under the folder and compares it with the manifest. Needs neither recipe nor
+/// database. Throws Error(asset) where there is no manifest or it is damaged.
+VerifyResult verify_files(const std::filesystem::path& folder);
+
+/// Adds what only the recipe and the database can tell: images the manifest lacks or has too many
+/// of, keys of an older recipe, a manifest that is not the one written.
+void verify_against_plan(VerifyResult& result, Dataset& dataset, const Plan& plan);
+
+/// Traces `count` images of the plan again, chosen by hash of `seed` and id, without looking into
+/// the store, and compares every file's bytes with what the manifest says. Calls `told` before
+/// each.
+void verify_by_tracing(VerifyResult& result, Dataset& dataset, const Plan& plan, Inputs& inputs,
+                       Renderer& renderer, std::uint64_t count, std::uint64_t seed,
+                       const std::function<void(const std::string& id)>& told,
+                       const std::atomic<bool>& stop);
+
+}  // namespace ds

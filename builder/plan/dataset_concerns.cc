@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/plan/dataset_concerns.h"
+
+#include "tracer/base/error.h"
+#include "tracer/render/image_files.h"
+
+#include <algorithm>
+#include <set>
+#include <span>
+#include <utility>
+
+namespace ds {
+namespace {
+
+/// Counts the image among those looked at, and among those concerned where it is one.
+void look(std::vector<Concern>& concerns, const char* name, const ImageRecord& image,
+          bool is_concerned) {
+  Concern& one = concern(concerns, name);
+  ++one.of;
+  if (is_concerned) add_example(one, image.id);
+}
+
+void look_at_image(std::vector<Concern>& concerns, const ImageRecord& image) {
+  const std::uint64_t pixels =
+      static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
+  const PixelCounts& counts = image.pixel_counts;
+  if (counts.model) {
+    look(concerns, "mask_empty", image, *counts.model == 0);
+    look(concerns, "mask_at_frame", image, counts.frame.value_or(0) > 0);
+    look(concerns, "mask_small", image, *counts.model > 0 && *counts.model * 100 < pixels);
+  }
+  if (counts.lit) {
+    // Under so few lit pixels: what noise leaves of a room without light.
+    look(concerns, "picture_black", image, *counts.lit * 1000 < pixels);
+  }
+  if (counts.white) look(concerns, "picture_white", image, *counts.white * 4 > pixels);
+}
+
+/// Of the class files, which the recipe has read.
+void look_at_labels(std::vector<Concern>& concerns, const Recipe& recipe,
+                    const std::vector<ImageRecord>& images) {
+  Concern& absent = concern(concerns, "models_absent");
+  absent = {absent.name, recipe.coverage.missing, recipe.coverage.listed,
+            recipe.coverage.missing_examples};
+  Concern& unlisted = concern(concerns, "models_unlisted");
+  unlisted = {unlisted.name, recipe.coverage.unlisted, recipe.coverage.files,
+              recipe.coverage.unlisted_examples};
+  // An image is of its class and of those above it.
+  std::set<std::string, std::less<>> seen;
+  for (const ImageRecord& image : images) {
+    std::string_view path = image.class_path;
+    while (!path.empty() && seen.emplace(path).second)
+      path = path.substr(0, path.rfind('/') == path.npos ? 0 : path.rfind('/'));
+  }
+  Concern& empty = concern(concerns, "classes_empty");
+  empty.of = recipe.class_paths.size();
+  for (const std::string& path : recipe.class_paths)
+    if (!seen.contains(path)) add_example(empty, path);
+}
+
+void look_at_splits(std::vector<Concern>& concerns, const Recipe& recipe,
+                    const std::vector<ImageRecord>& images) {
+  const bool by_chance = recipe.split_test_fraction.has_value();
+  Concern& empty = concern(concerns, "splits_empty");
+  for (const auto& [split, wanted] : {std::pair{"train", by_chance || recipe.train_classes},
+                                      std::pair{"test", by_chance || recipe.test_classes}}) {
+    if (!wanted) continue;
+    ++empty.of;
+    if (std::none_of(images.begin(), images.end(),
+                     [&](const ImageRecord& image) { return image.split == split; }))
+      add_example(empty, split);
+  }
+}
+
+PixelCounts count_file(const std::filesystem::path& file, const std::string& kind) {
+  const std::string bytes = read_image_file(file);
+  const DecodedImage image = decode_image_bytes(bytes_of(bytes), file.string(), Halves::keep);
+  if (image.type != SampleType::uint8) return {};
+  const std::span samples(reinterpret_cast<const std::uint8_t*>(image.samples.data()),
+                          image.samples.size());
+  if (kind == "image") return count_picture(samples, image.channels);
+  return image.channels == 1 ? count_mask(samples, image.width, image.height) : PixelCounts{};
+}
+
+}  // namespace
+
+std::vector<Concern> dataset_concerns(const Recipe& recipe, const Concern& unphysical,
+                                      const std::vector<ImageRecord>& images) {
+  std::vector<Concern> concerns = no_concerns();
+  for (const ImageRecord& image : images)
+    look_at_image(concerns, image);
+  look_at_labels(concerns, recipe, images);
+  look_at_splits(concerns, recipe, images);
+  concern(concerns, "assets_unphysical") = unphysical;
+  return concerns;
+}
+
+void count_older_pixels(ImageRecord& record, const PlannedImage& image,
+                        const std::filesystem::path& folder, Database& database) {
+  for (const OutputFile& output : image.keys.outputs) {
+    const bool counted = output.kind == "image"  ? record.pixel_counts.lit.has_value()
+                         : output.kind == "mask" ? record.pixel_counts.model.has_value()
+                                                 : true;
+    if (counted) continue;
+    try {
+      const PixelCounts counts = count_file(folder / output.path, output.kind);
+      add_counts(record.pixel_counts, counts);
+      database.add_pixel_counts(output.key, counts);
+    } catch (const DamagedDatabase&) {
+      throw;
+    } catch (const Error&) {  // it stands as it was placed, and is not for dsbuild to read then
+    }
+  }
+}
+
+}  // namespace ds

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/plan/dataset_manifest.h"
+
+#include "builder/plan/dataset_concerns.h"
+#include "builder/plan/licence_files.h"
+#include "tracer/base/files.h"
+
+#include <algorithm>
+#include <set>
+
+#ifndef DS_VERSION
+#  error "the build must define DS_VERSION"
+#endif
+
+namespace ds {
+namespace {
+
+/// Of a picture whose pixels have different numbers of samples: the mean, rounded up.
+int mean_spp(const FilmFacts& facts, const ImageRecord& image) {
+  const std::uint64_t pixels =
+      static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
+  return static_cast<int>((facts.samples + pixels - 1) / pixels);
+}
+
+}  // namespace
+
+std::string program_version() {
+  return DS_VERSION;
+}
+
+ImageRecord image_record(const PlannedImage& image, Database& database) {
+  const ImageSpec& spec = image.spec;
+  ImageRecord record;
+  record.id = spec.id;
+  record.model = spec.model_name;
+  record.class_path = spec.class_path;
+  record.split = spec.split;
+  record.material = spec.material_name;
+  record.environment = spec.environment_name;
+  record.view = spec.view;
+  record.seed = spec.engine.seed;
+  record.spp = spec.engine.spp;
+  record.width = spec.engine.width;
+  record.height = spec.engine.height;
+  record.math = spec.engine.math == MathMode::strict ? "strict" : "fast";
+  record.intrinsics = camera_intrinsics(spec.camera.fov_deg, record.width, record.height);
+  record.camera_to_world = camera_pose(spec.camera);
+  record.lens_radius_m = spec.camera.lens_radius_m;
+  record.focus_distance_m = spec.camera.focus_distance_m;
+  record.render_key = image.keys.render;
+  record.files_key = image.keys.files;
+  std::copy_n(image.keys.parts.begin(), record.parts.size(), record.parts.begin());
+  for (const OutputFile& output : image.keys.outputs) {
+    const std::optional<Product> product = database.find_product(output.key);
+    if (!product) fail(ErrorKind::io, "{}: the database has no record of its making", output.path);
+    record.files.push_back({output.path,
+                            output.kind,
+                            {product->object, product->sha256, product->size_bytes},
+                            product->pixels});
+    add_counts(record.pixel_counts, product->pixel_counts);
+    if (output.kind == "image") {
+      record.tone_map_scale = product->tone_map_scale;
+      record.rejected_samples = product->rejected_samples;
+      record.relative_error = product->relative_error;
+      record.film = product->facts;
+      if (spec.engine.target) record.spp = mean_spp(product->facts, record);
+    }
+  }
+  return record;
+}
+
+DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
+                             const std::vector<ImageRecord>& images) {
+  DatasetRecord record;
+  record.name = recipe.name;
+  record.licence = recipe.licence;
+  record.recipe_text = canonical_recipe(recipe);
+  record.dsbuild_version = program_version();
+  record.seed = recipe.seed;
+  std::set<std::string> models, classes;
+  std::map<std::string, std::uint64_t> splits;
+  for (const ImageRecord& image : images) {
+    models.insert(image.model);
+    if (!image.class_path.empty()) classes.insert(image.class_path);
+    if (!image.split.empty()) ++splits[image.split];
+  }
+  record.class_paths.assign(classes.begin(), classes.end());
+  record.counts = {{"images", images.size()}, {"models", models.size()}};
+  for (const auto& [split, count] : splits)
+    record.counts.emplace_back(split, count);
+  for (const auto& [model, what] : plan.mended)
+    if (models.contains(model)) record.mended_models.emplace_back(model, what.damage);
+  std::vector<std::pair<std::string, std::string>> texts;
+  const auto add_licences = [&](const char* kind,
+                                const std::vector<std::filesystem::path>& assets) {
+    for (auto& licence : licences_beside(kind, assets))
+      texts.push_back(std::move(licence));
+  };
+  add_licences("models", recipe.models);
+  add_licences("materials", recipe.materials);
+  add_licences("environments", recipe.environments);
+  record.licences = group_licences(texts);
+  record.concerns = dataset_concerns(recipe, plan.unphysical, images);
+  return record;
+}
+
+}  // namespace ds

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/plan/plan.h"
+#include "builder/store/disk.h"
+#include "manifests/manifest.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace ds {
+
+/// The version that manifests and `--version` name.
+std::string program_version();
+
+/// The manifest's line for an image whose files are in place. Throws Error(io) where the database
+/// does not know one.
+ImageRecord image_record(const PlannedImage& image, Database& database);
+
+/// What the manifest says of the dataset as a whole, for the images it lists.
+DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
+                             const std::vector<ImageRecord>& images);
+
+}  // namespace ds

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/db/database.h"
+#include "builder/recipe/camera_fit.h"
+#include "tracer/base/error.h"
+#include "tracer/scene/mesh.h"
+#include "tracer/scene/scene.h"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace ds {
+
+/// What a mesh has that textures may read.
+struct MeshHas {
+  bool uvs = false, colors = false;
+};
+
+/// Whether a file whose stamp is known is taken for the one that was read before.
+enum class Stamps {
+  trust,
+  ignore,  ///< every file is read: a disk's or a file system's fault leaves the stamp as it was
+};
+
+/// The files a recipe names, each read once. What was hashed before is known by its stamp (size,
+/// times, inode), so that looking at thousands of unchanged models reads none of them. A file that
+/// cannot be read fails the same way each time it is asked for.
+class Inputs {
+ public:
+  /// The database must outlive this.
+  explicit Inputs(Database& database, Stamps stamps = Stamps::trust)
+      : database_(database), stamps_(stamps) {}
+  Stamps stamps() const { return stamps_; }
+
+  /// geometry_hash of the model as read, before normalisation. Throws what `read_model` throws.
+  Hash128 model_geometry(const std::filesystem::path& file) { return model(file).geometry; }
+  /// What reading it mended; throws likewise.
+  const MendedDamage& model_damage(const std::filesystem::path& file) { return model(file).damage; }
+  /// The ball around the model as it is normalised. Reads it where the database does not know it.
+  const Sphere& model_sphere(const std::filesystem::path& file, const NormaliseOptions& options);
+  /// What its mesh has beside places; throws likewise.
+  MeshHas model_has(const std::filesystem::path& file) { return model(file).has; }
+  /// Reads and normalises. Throws Error(asset) where the file is no longer the one `model_geometry`
+  /// saw.
+  Mesh model_mesh(const std::filesystem::path& file, const NormaliseOptions& options);
+  const Scene& material(const std::filesystem::path& file);
+  const Scene& environment(const std::filesystem::path& folder);
+
+  /// Writes what was found of models since the last call into the database.
+  void remember();
+
+ private:
+  template <typename T>
+  struct Read {
+    std::optional<T> value;
+    std::optional<Error> error;
+  };
+  /// By path; a path's own comparison takes it apart each time.
+  template <typename T>
+  using Known = std::unordered_map<std::string, Read<T>>;
+  template <typename T, typename Reader>
+  const T& once(Known<T>& known, const std::filesystem::path& path, const Reader& reader);
+  /// What the database knows of a model, taken apart.
+  struct ModelFacts {
+    Hash128 geometry;
+    MendedDamage damage;
+    MeshHas has;
+  };
+  const ModelFacts& model(const std::filesystem::path& file);
+  KnownModel look_at_model(const std::filesystem::path& file);
+
+  struct NewModel {
+    std::filesystem::path file;
+    std::optional<FileStamp> stamp;
+    Hash128 content;
+    KnownModel known;
+  };
+
+  Database& database_;
+  Stamps stamps_;
+  Known<ModelFacts> models_;
+  Known<Scene> materials_, environments_;
+  std::vector<NewModel> new_models_;
+  Known<Sphere> spheres_;
+  std::map<Hash128, Sphere> new_spheres_;  ///< by the hash of the model part
+};
+
+}  // namespace ds

@@ -1,0 +1,414 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/plan/keys.h"
+
+#include "builder/plan/text_form.h"
+#include "tracer/base/canonical.h"
+#include "tracer/base/hex_text.h"
+#include "tracer/device/program_text.h"
+#include "tracer/device/program_tokens.h"
+#include "tracer/render/engine_text.h"
+#include "tracer/scene/sdl.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <deque>
+#include <map>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+
+namespace ds {
+namespace {
+
+/// How each kind of file is encoded. The names stand in the keys: a change of an encoder's settings
+/// changes its name here and makes the files anew from what is traced.
+struct Encoding {
+  const char* kind;
+  const char* ending;
+  const char* format;
+};
+constexpr Encoding k_encodings[] = {
+    {"image", ".png", "png 8 bit, zlib 6, version 1"},
+    {"mask", ".mask.png", "png 8 bit, zlib 6, version 1"},
+    {"depth", ".depth.exr", "exr float, zip, version 1"},
+};
+/// Version of how mask and depth are traced.
+constexpr int k_geometry_version = 1;
+
+const Encoding& encoding_of(std::string_view kind) {
+  for (const Encoding& encoding : k_encodings)
+    if (encoding.kind == kind) return encoding;
+  assertion_failed("kind is in k_encodings", __FILE__, __LINE__);
+}
+
+/// In the order of the files of an image.
+std::vector<const char*> kinds_of(const OutputSettings& outputs) {
+  std::vector<const char*> kinds;
+  if (outputs.image) kinds.push_back("image");
+  if (outputs.mask) kinds.push_back("mask");
+  if (outputs.depth) kinds.push_back("depth");
+  return kinds;
+}
+
+std::string_view view_of_digits(const fmt::format_int& number) {
+  return {number.data(), number.size()};
+}
+
+const char* name_of(Centring centre) {
+  return centre == Centring::none ? "none" : centre == Centring::mass ? "mass" : "box";
+}
+
+const char* name_of(Normals normals) {
+  return normals == Normals::smooth ? "smooth" : normals == Normals::keep ? "keep" : "flat";
+}
+
+void add_vector(CanonicalText& text, std::string_view name, Vec3d v) {
+  const double values[] = {v.x, v.y, v.z};
+  text.add(name, std::span<const double>(values));
+}
+
+/// Stands for the model where only the kinds of effects in a scene matter.
+Mesh stand_in() {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+  mesh.triangles = {{0, 1, 2}};
+  return mesh;
+}
+
+/// What is done to the film and which files there are, for `explain`.
+std::string canonical_files(const OutputSettings& outputs, const ToneMap& tone_map) {
+  CanonicalText text;
+  for (const char* kind : kinds_of(outputs))
+    text.add(kind, encoding_of(kind).format);
+  return text.text() + canonical_tone_map(tone_map);
+}
+
+}  // namespace
+
+Scene scene_without_model(Inputs& inputs, const ImageSpec& image) {
+  return compose(inputs.environment(image.environment_folder), inputs.material(image.material_file),
+                 stand_in());
+}
+
+const ToneMap& tone_map_of(const Recipe& recipe, const Scene& environment) {
+  return recipe.outputs.tone_map ? *recipe.outputs.tone_map : environment.tone_map;
+}
+
+std::string canonical_model(Hash128 geometry, const NormaliseOptions& options) {
+  CanonicalText text;
+  text.add("geometry", geometry.hex());
+  text.add("up", options.up == UpAxis::y ? "y" : "z");
+  if (options.size_m != 0) text.add("size_m", options.size_m);
+  if (options.place_on_ground) text.add("ground_z_m", options.ground_z_m);
+  text.add("centre", name_of(options.centre));
+  text.add("normals", name_of(options.normals));
+  if (options.normals == Normals::smooth) text.add("crease_deg", options.crease_deg);
+  return text.text();
+}
+
+std::string output_path(const std::string& image_id, const std::string& kind) {
+  constexpr std::string_view k_folder = "images/";
+  const std::string_view ending = encoding_of(kind).ending;
+  std::string path;
+  path.reserve(k_folder.size() + image_id.size() + ending.size());
+  ((path += k_folder) += image_id) += ending;
+  return path;
+}
+
+std::vector<std::string> output_paths(const OutputSettings& outputs, const std::string& image_id) {
+  std::vector<std::string> paths;
+  for (const char* kind : kinds_of(outputs))
+    paths.push_back(output_path(image_id, kind));
+  return paths;
+}
+
+namespace {
+
+/// What the key of an output is the hash of, less what it is made from.
+TextForm output_form(const char* kind, const std::string& development) {
+  CanonicalText text;
+  text.add("kind", kind);
+  text.add("from", "");
+  text.add("format", encoding_of(kind).format);
+  return {text.text() + development, {"from"}};
+}
+
+/// The five parts of the render key behind what `head` holds.
+TextForm form_of_parts(CanonicalText head) {
+  for (std::size_t i = 0; i < 5; ++i)
+    head.add(k_part_names[i], "");
+  return {head.text(), std::span(k_part_names).first<5>()};
+}
+
+/// What mask and depth see of an environment.
+std::string canonical_shape(const Scene& environment) {
+  CanonicalText text;
+  for (const Object& object : environment.objects) {
+    text.add("object.geometry", geometry_hash(object.mesh).hex());
+    text.add("object.camera_invisible", object.camera_invisible);
+  }
+  return text.text();
+}
+
+// Every member, and so no fewer: a struct with one more does not compile.
+auto members(const Camera& camera) {
+  const auto& [position, target, up, fov_deg, lens_radius_m, focus_distance_m] = camera;
+  return std::tie(position, target, up, fov_deg, lens_radius_m, focus_distance_m);
+}
+auto members(const ToneMap& map) {
+  const auto& [kind, scale, prescale, postscale, burn, gamma] = map;
+  return std::tie(kind, scale, prescale, postscale, burn, gamma);
+}
+bool same_target(const std::optional<ErrorTarget>& a, const std::optional<ErrorTarget>& b) {
+  if (!a || !b) return !a && !b;
+  const auto& [a_error, a_max_spp, a_tone_map, a_region] = *a;
+  const auto& [b_error, b_max_spp, b_tone_map, b_region] = *b;
+  return std::tie(a_error, a_max_spp, a_region) == std::tie(b_error, b_max_spp, b_region) &&
+         members(a_tone_map) == members(b_tone_map);
+}
+/// All but seed and target.
+auto members(const EngineSettings& engine) {
+  const auto& [width, height, spp, target, depth_total, depth_diffuse, depth_glossy, depth_specular,
+               roulette_depth, roulette_cap, filter_width, seed, outlier_limit, math] = engine;
+  return std::tie(width, height, spp, depth_total, depth_diffuse, depth_glossy, depth_specular,
+                  roulette_depth, roulette_cap, filter_width, outlier_limit, math);
+}
+
+bool same(const Camera& a, const Camera& b) {
+  return members(a) == members(b);
+}
+bool same_but_seed(const EngineSettings& a, const EngineSettings& b) {
+  return members(a) == members(b) && same_target(a.target, b.target);
+}
+
+/// What images from one camera in one environment share.
+struct View {
+  Shared<std::string> name;  ///< keeps the address that is this entry's name
+  Camera camera;
+  int width = 0, height = 0;
+  Hash128 part;
+  TextForm geometry;  ///< the geometry key's text, "model" to be filled
+};
+
+/// What images in one environment share.
+struct Environment {
+  Shared<std::filesystem::path> folder;  ///< keeps the address that is this entry's name
+  std::string text;                      ///< canonical
+  Hash128 part, files_part;
+  std::string shape;
+  TextForm picture;  ///< the picture's output
+  std::unordered_map<const void*, View> views;
+};
+
+/// What images of one material, environment and kind of lens share.
+struct Kind {
+  Shared<std::filesystem::path> material, environment;  ///< keep the addresses that are its name
+  Hash128 material_part;
+  const std::string* program = nullptr;
+  EngineSettings settings;  ///< with seed 0
+  TextForm engine;          ///< folded, "seed" to be filled
+  std::optional<TextForm> kept;
+};
+
+}  // namespace
+
+class KeyMaker::State {
+ public:
+  State(const Recipe& recipe, Inputs& inputs, TextSet& texts);
+
+  ImageKeys keys(const ImageSpec& image);
+  Hash128 kept_key(const ImageSpec& image, const ImageKeys& keys);
+  void add_texts(const ImageSpec& image);
+
+ private:
+  Hash128 model_part(const ImageSpec& image);
+  Environment& environment_of(const ImageSpec& image);
+  View& view_of(Environment& environment, const ImageSpec& image);
+  Kind& kind_of(const ImageSpec& image);
+  const std::string& program(const ImageSpec& image);
+  void add_outputs(ImageKeys& keys, Environment& environment, const std::string& id);
+
+  const Recipe& recipe_;
+  Inputs& inputs_;
+  TextSet& texts_;
+  std::vector<const char*> output_kinds_;  ///< of output files
+  Hash128 geometry_program_;
+  Shared<std::filesystem::path> model_;  ///< the last image's: a model's images follow each other
+  std::optional<Hash128> model_part_;
+  std::unordered_map<const void*, Environment> environments_;
+  std::map<std::tuple<const void*, const void*, bool>, Kind> kinds_;
+  std::deque<std::pair<Features, std::string>> programs_;
+  TextForm five_, film_sums_, mask_, depth_, files_;
+};
+
+KeyMaker::State::State(const Recipe& recipe, Inputs& inputs, TextSet& texts)
+    : recipe_(recipe),
+      inputs_(inputs),
+      texts_(texts),
+      output_kinds_(kinds_of(recipe.outputs)),
+      geometry_program_(hash_text(program_tokens(geometry_program_text()))),
+      five_(form_of_parts({})),
+      mask_(output_form("mask", "")),
+      depth_(output_form("depth", "")) {
+  CanonicalText head;
+  head.add("kind", "film_sums");
+  film_sums_ = form_of_parts(head);
+  CanonicalText files;
+  for (const char* kind : output_kinds_)
+    files.add(kind, "");
+  files_ = TextForm(files.text(), output_kinds_);
+}
+
+Hash128 KeyMaker::State::model_part(const ImageSpec& image) {
+  if (!model_part_ || !model_.is_same(image.model_file)) {
+    model_part_.reset();
+    const Hash128 geometry = inputs_.model_geometry(image.model_file);
+    model_ = image.model_file;
+    model_part_ = hash_text(texts_.fold(canonical_model(geometry, recipe_.normalise)));
+  }
+  return *model_part_;
+}
+
+Environment& KeyMaker::State::environment_of(const ImageSpec& image) {
+  const auto found = environments_.find(image.environment_folder.identity());
+  if (found != environments_.end()) return found->second;
+  const Scene& scene = inputs_.environment(image.environment_folder);
+  const ToneMap& tone_map = tone_map_of(recipe_, scene);
+  Environment made;
+  made.folder = image.environment_folder;
+  made.part = texts_.add(canonical_environment(scene));
+  made.files_part = texts_.add(canonical_files(recipe_.outputs, tone_map));
+  made.shape = canonical_shape(scene);
+  made.picture = output_form("image", canonical_tone_map(tone_map));
+  return environments_.emplace(made.folder.identity(), std::move(made)).first->second;
+}
+
+View& KeyMaker::State::view_of(Environment& environment, const ImageSpec& image) {
+  View& view = environment.views[image.view.identity()];
+  const EngineSettings& engine = image.engine;
+  if (view.width == engine.width && view.height == engine.height && same(view.camera, image.camera))
+    return view;
+  view.name = image.view;
+  view.camera = image.camera;
+  view.width = engine.width;
+  view.height = engine.height;
+  view.part = hash_text(texts_.fold(canonical_camera(image.camera)));
+  CanonicalText text;
+  text.add("version", k_geometry_version);
+  text.add("host_version", k_host_render_version);
+  text.add("program", geometry_program_.hex());
+  text.add("model", "");
+  text.add("environment", environment.shape);
+  add_vector(text, "camera.position", image.camera.position);
+  add_vector(text, "camera.target", image.camera.target);
+  add_vector(text, "camera.up", image.camera.up);
+  text.add("camera.fov_deg", image.camera.fov_deg);
+  text.add("width", engine.width);
+  text.add("height", engine.height);
+  view.geometry = TextForm(text.text(), {"model"});
+  return view;
+}
+
+/// Of few different ones, however many materials and environments there are.
+const std::string& KeyMaker::State::program(const ImageSpec& image) {
+  Features features = features_of(scene_without_model(inputs_, image), image.camera);
+  for (const auto& [known, text] : programs_)
+    if (known == features) return text;
+  std::string text = program_tokens(path_program_text(features));
+  return programs_.emplace_back(std::move(features), std::move(text)).second;
+}
+
+Kind& KeyMaker::State::kind_of(const ImageSpec& image) {
+  const bool lens = image.camera.lens_radius_m > 0;
+  Kind& kind = kinds_[{image.material_file.identity(), image.environment_folder.identity(), lens}];
+  if (kind.program != nullptr && same_but_seed(kind.settings, image.engine)) return kind;
+  EngineSettings settings = image.engine;
+  settings.seed = 0;
+  kind.material = image.material_file;
+  kind.environment = image.environment_folder;
+  kind.material_part = texts_.add(canonical_material(inputs_.material(image.material_file)));
+  const std::string& text = program(image);
+  kind.engine = TextForm(texts_.fold(canonical_engine(settings, text)), {"seed"});
+  kind.kept.reset();
+  kind.settings = settings;
+  kind.program = &text;
+  return kind;
+}
+
+void KeyMaker::State::add_outputs(ImageKeys& keys, Environment& environment,
+                                  const std::string& id) {
+  const HexText render(keys.render), geometry(keys.geometry);
+  keys.outputs.reserve(output_kinds_.size());
+  std::array<HexText, std::size(k_encodings)> texts;
+  std::array<std::string_view, std::size(k_encodings)> values;
+  for (std::size_t i = 0; i < output_kinds_.size(); ++i) {
+    const std::string_view kind = output_kinds_[i];
+    const bool of_film = kind == "image";
+    TextForm& form = of_film ? environment.picture : kind == "mask" ? mask_ : depth_;
+    const Hash128 key = form.hash({of_film ? render : geometry});
+    texts[i] = HexText(key);
+    values[i] = texts[i];
+    keys.outputs.push_back({output_kinds_[i], output_path(id, output_kinds_[i]), key});
+  }
+  keys.files = files_.hash(std::span(values).first(output_kinds_.size()));
+}
+
+ImageKeys KeyMaker::State::keys(const ImageSpec& image) {
+  Environment& environment = environment_of(image);
+  View& view = view_of(environment, image);
+  Kind& kind = kind_of(image);
+  ImageKeys keys;
+  keys.parts = {model_part(image),
+                kind.material_part,
+                environment.part,
+                view.part,
+                kind.engine.hash({view_of_digits(fmt::format_int(image.engine.seed))}),
+                environment.files_part};
+  const auto& parts = keys.parts;
+  const HexText model(parts[0]);
+  keys.render = five_.hash(
+      {model, HexText(parts[1]), HexText(parts[2]), HexText(parts[3]), HexText(parts[4])});
+  keys.geometry = view.geometry.hash({model});
+  add_outputs(keys, environment, image.id);
+  return keys;
+}
+
+Hash128 KeyMaker::State::kept_key(const ImageSpec& image, const ImageKeys& keys) {
+  Kind& kind = kind_of(image);
+  if (!kind.kept)
+    kind.kept = TextForm(canonical_kept_engine(kind.settings, *kind.program), {"seed"});
+  const Hash128 engine = kind.kept->hash({view_of_digits(fmt::format_int(image.engine.seed))});
+  const auto& parts = keys.parts;
+  return film_sums_.hash({HexText(parts[0]), HexText(parts[1]), HexText(parts[2]),
+                          HexText(parts[3]), HexText(engine)});
+}
+
+/// The other texts were added when the first image of their kind was met.
+void KeyMaker::State::add_texts(const ImageSpec& image) {
+  texts_.add(canonical_model(inputs_.model_geometry(image.model_file), recipe_.normalise));
+  texts_.add(canonical_camera(image.camera));
+  texts_.add(kind_of(image).engine.fill({view_of_digits(fmt::format_int(image.engine.seed))}));
+}
+
+KeyMaker::KeyMaker(const Recipe& recipe, Inputs& inputs, TextSet& texts)
+    : state_(std::make_unique<State>(recipe, inputs, texts)) {}
+
+KeyMaker::~KeyMaker() = default;
+
+ImageKeys KeyMaker::keys(const ImageSpec& image) {
+  return state_->keys(image);
+}
+
+Hash128 KeyMaker::kept_key(const ImageSpec& image, const ImageKeys& keys) {
+  return state_->kept_key(image, keys);
+}
+
+void KeyMaker::add_texts(const ImageSpec& image) {
+  state_->add_texts(image);
+}
+
+}  // namespace ds

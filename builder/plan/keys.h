@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/db/database.h"
+#include "builder/plan/inputs.h"
+#include "builder/plan/texts.h"
+#include "builder/recipe/recipe.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace ds {
+
+/// One file of an image, and the key of what it is made from.
+struct OutputFile {
+  std::string kind;  ///< "image", "mask", "depth"
+  std::string path;  ///< relative to the dataset's folder: "images/human.ply/0.mask.png"
+  Hash128 key;
+};
+
+/// The keys of one image: one for each stage, so that a change costs only the stages after it.
+///   render    what is traced: hash of the five parts
+///   kept      of a film under way: render less spp, error and max_spp
+///   geometry  what mask and depth are traced from: model, normalisation, the environment's meshes,
+///   camera less its lens,
+///             size
+///   outputs   each file: render or geometry key, tone map, encoding
+struct ImageKeys {
+  PartHashes parts;  ///< of folded texts; the sixth, "files", is not in `render`
+  Hash128 render, geometry;
+  /// Of the film's sums: as render, less what only says when to stop. Zero where no film is kept or
+  /// nothing of the image is made.
+  Hash128 kept;
+  Hash128 files;  ///< of all outputs
+  std::vector<OutputFile> outputs;
+};
+
+/// Makes keys, and keeps the texts they are hashes of. What images of one kind share (the traced program's text, canonical texts, their
+/// hashes) is made once a kind: 25,000 images take a fraction of a second. Needs no OpenCL device.
+/// Everything it refers to must outlive it.
+class KeyMaker {
+ public:
+  KeyMaker(const Recipe& recipe, Inputs& inputs, TextSet& texts);
+  ~KeyMaker();
+
+  /// All but `kept`. Throws where a file of the image cannot be read.
+  ImageKeys keys(const ImageSpec& image);
+  /// ImageKeys::kept: a hash of the whole program's text, so only for images that need it.
+  Hash128 kept_key(const ImageSpec& image, const ImageKeys& keys);
+  /// Puts the texts that `keys` are hashes of into the set, for `explain`.
+  void add_texts(const ImageSpec& image);
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+/// The image's scene with one triangle in the model's place: all that its program depends on.
+/// Throws where a file cannot be read.
+Scene scene_without_model(Inputs& inputs, const ImageSpec& image);
+
+/// The tone map an image is developed with: the recipe's, else its environment's.
+const ToneMap& tone_map_of(const Recipe& recipe, const Scene& environment);
+
+/// Canonical text of the model part: geometry and the normalisation steps that are switched on.
+std::string canonical_model(Hash128 geometry, const NormaliseOptions& options);
+
+/// Path of an output of an image: "images/human.ply/0.png".
+std::string output_path(const std::string& image_id, const std::string& kind);
+
+/// Paths of all files that an image of the recipe consists of; known of images too whose files
+/// cannot be read.
+std::vector<std::string> output_paths(const OutputSettings& outputs, const std::string& image_id);
+
+}  // namespace ds

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/plan/plan.h"
+
+#include "builder/plan/hash_index.h"
+#include "builder/plan/limits.h"
+#include "builder/plan/manifest_state.h"
+#include "builder/plan/placed_files.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Reasons named in full; what follows is counted.
+constexpr std::size_t k_most_changes = 4;
+
+class Planner {
+ public:
+  Planner(Dataset& dataset, KeyMaker& keys, TextSet& texts, bool force, Stamps stamps)
+      : dataset_(dataset),
+        database_(*dataset.database),
+        keys_(keys),
+        texts_(texts),
+        force_(force),
+        placed_(std::make_shared<PlacedFiles>(dataset, stamps)),
+        rejected_(database_.pictures_with_rejected()) {
+    known_.reserve(image_count(dataset.recipe));
+    database_.visit_images(dataset.row.id, [&](std::string_view id, const PartHashes& parts) {
+      known_.push_back({hash_text(id), parts, false});
+    });
+    by_id_ = HashIndex(known_.size(), [&](std::size_t i) { return known_[i].id; });
+    std::sort(rejected_.begin(), rejected_.end());
+  }
+
+  /// `known`: what `want` gave.
+  void plan(PlannedImage& image, const PartHashes* known);
+  /// Notes that the recipe has such an image, and gives what the database has of it.
+  const PartHashes* want(const std::string& id);
+  /// Whether the database knows images that nobody wanted.
+  bool forgets() const;
+  const std::shared_ptr<PlacedFiles>& placed() { return placed_; }
+
+ private:
+  /// What the database has of an image, by the hash of its id.
+  struct Known {
+    Hash128 id;
+    PartHashes parts;
+    bool wanted = false;
+  };
+  bool in_store(Hash128 key);
+  void plan_files(PlannedImage& image, bool changed);
+  void find_kept(PlannedImage& image);
+  void add_changes(PlannedImage& image, const PartHashes& before);
+  void check_known_picture(PlannedImage& image);
+
+  Dataset& dataset_;
+  Database& database_;
+  KeyMaker& keys_;
+  TextSet& texts_;
+  bool force_;
+  std::vector<Known> known_;
+  HashIndex by_id_;
+  std::shared_ptr<PlacedFiles> placed_;
+  std::vector<Hash128> rejected_;  ///< ascending
+};
+
+const PartHashes* Planner::want(const std::string& id) {
+  const auto row = by_id_.find(hash_text(id), [&](std::size_t i) { return known_[i].id; });
+  if (!row) return nullptr;
+  known_[*row].wanted = true;
+  return &known_[*row].parts;
+}
+
+bool Planner::forgets() const {
+  return std::any_of(known_.begin(), known_.end(),
+                     [](const Known& known) { return !known.wanted; });
+}
+
+bool Planner::in_store(Hash128 key) {
+  if (!dataset_.store) return false;
+  const std::optional<Product> product = database_.find_product(key);
+  return product && dataset_.store->has(product->object);
+}
+
+void Planner::add_changes(PlannedImage& image, const PartHashes& before) {
+  const auto changes = changes_since(image, before, texts_, database_);
+  for (std::size_t i = 0; i < std::min(changes.size(), k_most_changes); ++i)
+    image.reasons.push_back(
+        fmt::format("{} changed: {}", changes[i].first, to_string(changes[i].second)));
+  if (changes.size() > k_most_changes)
+    image.reasons.push_back(fmt::format("and {} more change{}", changes.size() - k_most_changes,
+                                        changes.size() == k_most_changes + 1 ? "" : "s"));
+}
+
+/// The kept film that tracing can go on from.
+void Planner::find_kept(PlannedImage& image) {
+  if (force_ || !in_store(image.keys.kept)) return;
+  const std::uint64_t samples = database_.find_product(image.keys.kept)->facts.samples;
+  // Of another number of samples it is started anew; with an error target the tracer decides.
+  if (samples <= image.samples()) image.kept_samples = samples;
+}
+
+void Planner::plan_files(PlannedImage& image, bool changed) {
+  for (const OutputFile& output : image.keys.outputs) {
+    PlannedFile file{output, FileState::in_place};
+    const std::string reason = placed_->why_not_in_place(image.spec.id, output);
+    if (!reason.empty() || force_) {
+      // Where a property changed, that is the reason, and the files of older keys follow from it.
+      if (!reason.empty() && !changed) image.reasons.push_back(reason);
+      file.state = !force_ && in_store(output.key) ? FileState::in_store : FileState::to_make;
+    }
+    if (file.state == FileState::to_make) {
+      if (output.kind != "image")
+        image.trace_geometry = true;
+      else if (force_ || !in_store(image.keys.render))
+        image.trace_film = true;
+    }
+    image.files.push_back(std::move(file));
+  }
+  const auto in_place = [](const PlannedFile& file) { return file.state == FileState::in_place; };
+  if (!dataset_.recipe.keep_sums || std::all_of(image.files.begin(), image.files.end(), in_place))
+    return;
+  image.keys.kept = keys_.kept_key(image.spec, image.keys);
+  if (image.trace_film) find_kept(image);
+}
+
+/// A picture that was traced and refused is not traced again: it fails as it did.
+void Planner::check_known_picture(PlannedImage& image) {
+  if (force_) return;
+  for (const OutputFile& output : image.keys.outputs) {
+    if (output.kind != "image") continue;
+    // No limit is below no rejected sample.
+    if (!std::binary_search(rejected_.begin(), rejected_.end(), output.key)) continue;
+    const std::optional<Product> known = database_.find_product(output.key);
+    if (!known) continue;
+    image.refused = true;
+    check_limits(dataset_.recipe, image.spec, *known);
+    image.refused = false;
+  }
+}
+
+void Planner::plan(PlannedImage& image, const PartHashes* known) {
+  check_known_picture(image);
+  if (image.elsewhere) return;
+  const bool changed = known != nullptr && *known != image.keys.parts;
+  const bool as_known = known != nullptr && !changed;
+  if (as_known && !force_ && placed_->all_in_place(image)) return;
+  keys_.add_texts(image.spec);
+  if (force_) image.reasons.emplace_back("forced");
+  if (known == nullptr) image.reasons.emplace_back("new");
+  if (changed) add_changes(image, *known);
+  plan_files(image, !as_known);
+  const auto in_place = [](const PlannedFile& file) { return file.state == FileState::in_place; };
+  if (std::all_of(image.files.begin(), image.files.end(), in_place)) {
+    // Only the record is behind: an output was switched off, or a database was lost.
+    image.record = !image.reasons.empty();
+    image.reasons.clear();
+  }
+  if (as_known && image.trace_film && !force_)
+    image.reasons.emplace_back("its film is not in the store");
+}
+
+/// Else it would be found when the image is traced and cannot be put into its folder.
+void check_names(const std::vector<OutputFile>& outputs) {
+  constexpr std::size_t k_longest_name = 255;  // NAME_MAX of Linux's file systems
+  for (const OutputFile& output : outputs) {
+    const std::size_t bytes = output.path.size() - (output.path.rfind('/') + 1);
+    if (bytes > k_longest_name)
+      fail(ErrorKind::recipe, "{}: its name must be of at most {} bytes, got {}", output.path,
+           k_longest_name, bytes);
+  }
+}
+
+/// Counts the files, whose findings were said when they were read.
+Concern count_unphysical(const std::vector<PlannedImage>& images, Inputs& inputs) {
+  Concern concern{"assets_unphysical", 0, 0, {}};
+  std::set<const void*> seen;  // the files' paths are long, and images many
+  std::set<std::string> files;
+  const auto look = [&](const Shared<fs::path>& asset, const auto& read) {
+    if (!seen.insert(asset.identity()).second || !files.insert(asset->native()).second) return;
+    const Scene& scene = read();
+    ++concern.of;
+    if (std::any_of(scene.materials.begin(), scene.materials.end(),
+                    [](const Material& material) { return !material.unphysical.empty(); }))
+      add_example(concern, asset->filename().string());
+  };
+  for (const PlannedImage& image : images) {
+    if (image.error) continue;
+    const ImageSpec& spec = image.spec;
+    look(spec.material_file, [&]() -> const Scene& { return inputs.material(spec.material_file); });
+    look(spec.environment_folder,
+         [&]() -> const Scene& { return inputs.environment(spec.environment_folder); });
+  }
+  return concern;
+}
+
+}  // namespace
+
+std::uint64_t PlannedImage::samples() const {
+  return static_cast<std::uint64_t>(spec.engine.width) *
+             static_cast<std::uint64_t>(spec.engine.height) *
+             static_cast<std::uint64_t>(spec.engine.target ? spec.engine.target->max_spp
+                                                           : spec.engine.spp) -
+         kept_samples;
+}
+
+Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
+  Plan plan;
+  plan.data_version = dataset.database->data_version();
+  std::optional<Snapshot> snapshot(std::in_place, dataset.database->connection());
+  KeyMaker keys(dataset.recipe, inputs, plan.texts);
+  Planner planner(dataset, keys, plan.texts, force, inputs.stamps());
+  plan.images.reserve(image_count(dataset.recipe));
+  Shared<std::filesystem::path> model;  // of the image before: a model's images follow each other
+  expand(dataset.recipe, [&](ImageSpec&& spec) {
+    PlannedImage image;
+    image.elsewhere = !shard.holds(spec.id);
+    const PartHashes* known = planner.want(spec.id);
+    image.spec = std::move(spec);
+    try {
+      if (dataset.recipe.camera_fit)
+        fit_image(image.spec, dataset.recipe,
+                  inputs.model_sphere(image.spec.model_file, dataset.recipe.normalise));
+      if (image.spec.engine.target)
+        image.spec.engine.target->tone_map =
+            tone_map_of(dataset.recipe, inputs.environment(image.spec.environment_folder));
+      image.keys = keys.keys(image.spec);
+      check_names(image.keys.outputs);
+      if (!model.is_same(image.spec.model_file)) {
+        const MendedDamage& damage = inputs.model_damage(image.spec.model_file);
+        if (!damage.empty())
+          plan.mended.try_emplace(image.spec.model_name,
+                                  MendedModel{image.spec.model_file, damage});
+        model = image.spec.model_file;
+      }
+      planner.plan(image, known);
+    } catch (const DamagedDatabase&) {
+      throw;
+    } catch (const Error& error) {
+      PlannedImage failed;
+      failed.spec = std::move(image.spec);
+      failed.elsewhere = image.elsewhere;
+      failed.refused = image.refused;
+      if (image.refused) failed.keys = std::move(image.keys);
+      failed.error = error;
+      image = std::move(failed);
+    }
+    plan.images.push_back(std::move(image));
+  });
+  plan.placed = planner.placed();
+  plan.to_remove = plan.placed->left_over(plan.images, shard);
+  plan.forgets = planner.forgets();
+  plan.unphysical = count_unphysical(plan.images, inputs);
+  snapshot.reset();
+  plan.labels = labels_of(dataset.recipe, plan);
+  plan.manifest = manifest_state(dataset, plan, *plan.placed);
+  inputs.remember();
+  plan.placed->remember_stamps();
+  return plan;
+}
+
+std::vector<std::pair<std::string, PropertyChange>> changes_since(const PlannedImage& image,
+                                                                  const PartHashes& before,
+                                                                  const TextSet& texts,
+                                                                  Database& database) {
+  std::vector<std::pair<std::string, PropertyChange>> changes;
+  for (std::size_t i = 0; i < k_part_count; ++i) {
+    const Hash128 after = image.keys.parts[i];
+    if (before[i] == after) continue;
+    const std::string* new_text = texts.find(after);
+    DS_ASSERT(new_text != nullptr);
+    const std::optional<std::string> old_text = database.find_text(before[i]);
+    if (!old_text) {
+      changes.push_back({k_part_names[i], {"text", before[i].hex(), after.hex()}});
+      continue;
+    }
+    for (PropertyChange& change : diff_texts(*old_text, *new_text))
+      changes.push_back({k_part_names[i], std::move(change)});
+  }
+  return changes;
+}
+
+}  // namespace ds

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/store/dataset.h"
+
+#include "builder/store/folder_lock.h"
+#include "builder/store/store_database.h"
+#include "tracer/base/error.h"
+#include "tracer/base/files.h"
+#include "tracer/base/hash_stream.h"
+#include "tracer/base/log.h"
+
+#include <random>
+#include <sstream>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* k_state_folder = ".dsbuild";
+constexpr const char* k_pointer_file = "dataset";
+constexpr const char* k_pointer_header = "dsbuild dataset 2";
+constexpr const char* k_older_header = "dsbuild dataset 1";
+
+/// `.dsbuild/dataset`, a line each:
+///   "dsbuild dataset 2"
+///   the dataset's id
+///   the store's folder, "." or absolute
+///   the dataset's folder when it was last built, absolute
+///   the recipe that the folder belongs to, absolute
+/// Version 1 had the first three only.
+struct Pointer {
+  std::string id;
+  fs::path store;           ///< absolute
+  fs::path folder, recipe;  ///< empty in version 1
+
+  bool operator==(const Pointer&) const = default;
+};
+
+fs::path pointer_path(const fs::path& folder) {
+  return folder / k_state_folder / k_pointer_file;
+}
+
+fs::path normal(const fs::path& path) {
+  const fs::path whole = fs::absolute(path).lexically_normal();
+  return whole.has_filename() ? whole : whole.parent_path();  // "out/" is "out"
+}
+
+/// Nothing where there is none or it is damaged, which a warning says unless `silent`.
+std::optional<Pointer> read_pointer(const fs::path& folder, bool silent = false) {
+  const fs::path file = pointer_path(folder);
+  std::error_code error;
+  if (!fs::exists(file, error)) return std::nullopt;
+  std::istringstream text(read_text_file(file));
+  std::string header, id, store, built, recipe;
+  for (std::string* line : {&header, &id, &store, &built, &recipe})
+    std::getline(text, *line);
+  const bool whole = header == k_pointer_header && !built.empty() && !recipe.empty();
+  if (!(whole || header == k_older_header) || !Hash128::from_hex(id) || store.empty()) {
+    if (!silent) warn(fmt::format("{}: damaged; the dataset is entered anew", file.string()));
+    return std::nullopt;
+  }
+  Pointer pointer{id, normal(folder / k_state_folder / store), {}, {}};
+  if (whole) {
+    pointer.folder = built;
+    pointer.recipe = recipe;
+  }
+  return pointer;
+}
+
+void write_pointer(const fs::path& folder, const Pointer& pointer, Disk& disk) {
+  const fs::path state = folder / k_state_folder;
+  // A store inside the dataset's folder moves with it; any other stays where it is.
+  const bool own = pointer.store == state;
+  const std::string text = fmt::format("{}\n{}\n{}\n{}\n{}\n", k_pointer_header, pointer.id,
+                                       own ? "." : pointer.store.string(), pointer.folder.string(),
+                                       pointer.recipe.string());
+  disk.write(pointer_path(folder), bytes_of(text));
+}
+
+std::string new_id() {
+  std::random_device device;
+  const auto word = [&] { return (std::uint64_t{device()} << 32) | device(); };
+  return Hash128{word(), word()}.hex();
+}
+
+/// The place as it is under all links, but for a link of its last name: two recipes that link to one
+/// file read their paths from two folders.
+fs::path place_of(const fs::path& file) {
+  std::error_code error;
+  const fs::path whole = normal(file);
+  const fs::path folder = fs::weakly_canonical(whole.parent_path(), error);
+  return (error ? whole.parent_path() : folder) / whole.filename();
+}
+
+bool same_place(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  return a == b ||
+         (a.filename() == b.filename() && fs::equivalent(a.parent_path(), b.parent_path(), error));
+}
+
+/// Whether both are files that can be read, and not of the same bytes.
+bool are_two_files(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (!fs::is_regular_file(a, error) || !fs::is_regular_file(b, error)) return false;
+  try {
+    return content_hash(a) != content_hash(b);
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// Where a path of when the folder was built leads now: to the same place seen from the folder,
+/// where folder and path were moved or copied together, else where it led. A file that lies there
+/// by chance while the one it led to is where it was, and of other bytes, was not moved.
+fs::path moved(const fs::path& path, const Pointer& pointer, const fs::path& folder) {
+  if (pointer.folder.empty()) return path;
+  const fs::path beside = (folder / path.lexically_relative(pointer.folder)).lexically_normal();
+  std::error_code error;
+  return fs::exists(beside, error) && !are_two_files(path, beside) ? beside : path;
+}
+
+/// Whether the folder with this pointer belongs to the recipe, as far as the pointer tells.
+bool belongs_to(const Pointer& pointer, const fs::path& folder, const fs::path& recipe) {
+  const fs::path place = place_of(recipe);
+  return same_place(pointer.recipe, place) ||
+         same_place(moved(pointer.recipe, pointer, place_of(folder)), place);
+}
+
+/// out/<name> in the working folder; where nothing of the recipe lies there, the nearest such folder
+/// above it or above the recipe that belongs to it: where a command is typed is not to decide which
+/// dataset it is about.
+fs::path default_folder(const Recipe& recipe) {
+  const fs::path name = fs::path("out") / recipe.name;
+  const fs::path here = normal(name);
+  for (const fs::path& start : {fs::current_path(), recipe.file.parent_path()})
+    for (fs::path above = start;; above = above.parent_path()) {
+      const fs::path folder = normal(above / name);
+      const std::optional<Pointer> pointer = read_pointer(folder, true);
+      if (pointer && !pointer->recipe.empty() && belongs_to(*pointer, folder, recipe.file))
+        return folder;
+      if (!above.has_relative_path()) break;
+    }
+  return here;
+}
+
+fs::path folder_of(const DatasetRequest& request, const Recipe& recipe) {
+  return request.output_folder.empty() ? default_folder(recipe) : normal(request.output_folder);
+}
+
+/// Throws where the folder belongs to another recipe.
+void check_owner(const DatasetRequest& request, const fs::path& folder, const Recipe& recipe,
+                 const std::optional<Pointer>& pointer, Database* database) {
+  if (!pointer || request.adopt) return;
+  fs::path owner = pointer->recipe;
+  if (owner.empty()) {
+    // Of an older dsbuild. One whose recipe is gone may have been moved with it.
+    const auto row = database != nullptr ? database->find_dataset(pointer->id) : std::nullopt;
+    std::error_code error;
+    if (!row || !fs::exists(row->recipe, error)) return;
+    owner = place_of(row->recipe);
+    if (same_place(owner, place_of(recipe.file))) return;
+  } else if (belongs_to(*pointer, folder, recipe.file)) {
+    return;
+  }
+  fail(ErrorKind::usage,
+       "{}: the folder belongs to the recipe {}, found {}; give this one a dataset.name of its own "
+       "or another folder (-o), or hand the folder over with build --adopt",
+       folder.string(), owner.string(), recipe.file.string());
+}
+
+/// Throws where the folder holds what a build would write over and no build is known to have put
+/// there: somebody's own files, or a dataset handed on without its `.dsbuild`.
+void check_unclaimed(const DatasetRequest& request, const fs::path& folder) {
+  std::error_code error;
+  if (request.adopt || fs::exists(pointer_path(folder), error)) return;
+  for (const char* name : {"images", "manifest"})
+    if (fs::exists(folder / name, error))
+      fail(ErrorKind::usage,
+           "{}: is there already, and {} does not say that dsbuild made it; take another folder "
+           "(-o), or hand this one over with build --adopt",
+           (folder / name).string(), pointer_path(folder).string());
+}
+
+/// Relative paths in overrides start from the folder the build was started in.
+class WorkingFolder {
+ public:
+  explicit WorkingFolder(const fs::path& folder) : before_(fs::current_path()) {
+    std::error_code error;
+    fs::current_path(folder, error);
+    if (error)
+      fail(ErrorKind::io,
+           "{}: the folder the dataset was built from, where the paths of its --set start: {}; put "
+           "it back, or build the recipe again with -o and --set",
+           folder.string(), error.message());
+  }
+  ~WorkingFolder() {
+    std::error_code ignored;
+    fs::current_path(before_, ignored);
+  }
+  WorkingFolder(const WorkingFolder&) = delete;
+  WorkingFolder& operator=(const WorkingFolder&) = delete;
+
+ private:
+  fs::path before_;
+};
+
+void open_store(Dataset& dataset, const fs::path& folder, Disk& disk) {
+  dataset.store = std::make_unique<Store>(folder, disk);
+  dataset.claims = std::make_unique<Claims>(folder / "lock");
+  dataset.database = open_database(*dataset.store, *dataset.claims);
+}
+
+/// Writes whose the folder is. Builds that start at once in a new folder enter one dataset, not one
+/// each, and one recipe.
+Pointer enter_folder(const Dataset& dataset, const DatasetRequest& request, Pointer pointer,
+                     Disk& disk) {
+  FolderLock lock(dataset.folder);
+  const FolderLock::Gate gate(lock);
+  const std::optional<Pointer> known = read_pointer(dataset.folder, true);
+  check_owner(request, dataset.folder, dataset.recipe, known, dataset.database.get());
+  if (known) pointer.id = known->id;
+  pointer.folder = place_of(dataset.folder);
+  pointer.recipe = place_of(dataset.recipe.file);
+  // A copy that shares its store with what it was copied from is a dataset of its own.
+  if (known && !known->folder.empty() && known->folder != pointer.folder)
+    if (const auto other = read_pointer(known->folder, true);
+        other && other->id == known->id && other->store == pointer.store)
+      pointer.id = new_id();
+  if (known != pointer) write_pointer(dataset.folder, pointer, disk);
+  return pointer;
+}
+
+/// Throws where the recipe of a folder is no longer there.
+void check_recipe_is_there(const fs::path& folder, const fs::path& recipe) {
+  std::error_code error;
+  if (fs::exists(recipe, error)) return;
+  fail(ErrorKind::recipe,
+       "{0}: was built from the recipe {1}, which is no longer there; put it back, or hand the "
+       "folder "
+       "over to it where it is now: dsbuild build RECIPE -o {0} --adopt (verify and log need no "
+       "recipe)",
+       folder.string(), recipe.string());
+}
+
+/// For a folder that no build wrote: the recipe in it, or beside it and of its name, that may have
+/// been meant.
+std::string recipe_meant(const fs::path& folder) {
+  std::error_code error;
+  const fs::path beside = folder.string() + ".toml";
+  if (fs::is_regular_file(beside, error)) return fmt::format(", did you mean {}?", beside.string());
+  std::vector<fs::path> recipes;
+  for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator();
+       entry.increment(error))
+    if (entry->path().extension() == ".toml") recipes.push_back(entry->path());
+  return recipes.size() == 1 ? fmt::format(", did you mean {}?", recipes.front().string()) : "";
+}
+
+Dataset open_folder(const DatasetRequest& request, Access access, Disk& disk) {
+  if (!request.overrides.empty())
+    fail(ErrorKind::usage,
+         "--set needs a recipe, found the folder {}, which keeps the settings it was built with",
+         request.target.string());
+  if (!request.output_folder.empty())
+    fail(ErrorKind::usage, "-o needs a recipe, found the folder {}", request.target.string());
+  Dataset dataset;
+  dataset.folder = normal(request.target);
+  const std::optional<Pointer> pointer = read_pointer(dataset.folder);
+  if (!pointer)
+    fail(ErrorKind::usage, "{}: wanted a recipe or a folder that dsbuild built{}",
+         request.target.string(), recipe_meant(dataset.folder));
+  std::error_code error;
+  if (!fs::is_directory(pointer->store, error))
+    fail(ErrorKind::io,
+         "{}: its store {} is not there; put it back, or build the recipe with -o and --store",
+         dataset.folder.string(), pointer->store.string());
+  open_store(dataset, pointer->store, disk);
+  const std::optional<DatasetRow> row = dataset.database->find_dataset(pointer->id);
+  if (!row)
+    fail(ErrorKind::io, "{}: the store {} knows nothing of it; build its recipe again",
+         dataset.folder.string(), pointer->store.string());
+  dataset.row = *row;
+  if (access == Access::records) return dataset;
+  const fs::path place = place_of(dataset.folder);
+  dataset.row.recipe = moved(row->recipe, *pointer, place);
+  check_recipe_is_there(dataset.folder, dataset.row.recipe);
+  std::optional<WorkingFolder> working_folder;
+  if (!row->overrides.empty()) {
+    if (dataset.row.recipe != row->recipe)
+      dataset.row.working_folder = moved(row->working_folder, *pointer, place);
+    working_folder.emplace(dataset.row.working_folder);
+  }
+  dataset.recipe = read_recipe(dataset.row.recipe, row->overrides);
+  if (access == Access::build) dataset.row.id = enter_folder(dataset, request, *pointer, disk).id;
+  return dataset;
+}
+
+Dataset open_recipe(const DatasetRequest& request, Access access, Disk& disk) {
+  Dataset dataset;
+  dataset.recipe = read_recipe(request.target, request.overrides);
+  dataset.folder = folder_of(request, dataset.recipe);
+  const std::optional<Pointer> known = read_pointer(dataset.folder);
+  Pointer pointer = known.value_or(Pointer{new_id(), dataset.folder / k_state_folder, {}, {}});
+  if (!request.store_folder.empty()) pointer.store = normal(request.store_folder);
+  std::error_code error;
+  const bool has_store = fs::is_directory(pointer.store, error);
+  if (access != Access::inputs && known && !known->recipe.empty())
+    check_owner(request, dataset.folder, dataset.recipe, known, nullptr);
+  if (access == Access::build) check_unclaimed(request, dataset.folder);
+  if (access != Access::build && !has_store)
+    dataset.database = std::make_unique<Database>(fs::path());
+  else
+    open_store(dataset, pointer.store, disk);
+  if (access != Access::inputs)
+    check_owner(request, dataset.folder, dataset.recipe, known, dataset.database.get());
+  if (access == Access::build) pointer = enter_folder(dataset, request, pointer, disk);
+  const std::optional<DatasetRow> row = dataset.database->find_dataset(pointer.id);
+  dataset.row = {pointer.id,         dataset.recipe.name, dataset.recipe.file,
+                 fs::current_path(), request.overrides,   row ? row->manifest : Hash128{}};
+  return dataset;
+}
+
+}  // namespace
+
+Dataset open_dataset(const DatasetRequest& request, Access access, Disk& disk) {
+  std::error_code error;
+  return fs::is_directory(request.target, error) ? open_folder(request, access, disk)
+                                                 : open_recipe(request, access, disk);
+}
+
+fs::path dataset_folder(const DatasetRequest& request) {
+  std::error_code error;
+  if (fs::is_directory(request.target, error)) return normal(request.target);
+  const Recipe recipe = read_recipe(request.target, request.overrides);
+  fs::path folder = folder_of(request, recipe);
+  check_owner(request, folder, recipe, read_pointer(folder, true), nullptr);
+  return folder;
+}
+
+std::optional<fs::path> recipe_left_behind(const fs::path& folder) {
+  const std::optional<Pointer> pointer = read_pointer(normal(folder), true);
+  if (!pointer || pointer->folder.empty()) return std::nullopt;
+  const fs::path place = place_of(folder);
+  if (pointer->folder == place) return std::nullopt;
+  if (moved(pointer->recipe, *pointer, place) != pointer->recipe) return std::nullopt;
+  return pointer->recipe;
+}
+
+bool has_lost_state(const fs::path& folder) {
+  std::error_code error;
+  return fs::exists(folder / "manifest", error) && !fs::exists(pointer_path(folder), error);
+}
+
+std::optional<fs::path> enclosing_dataset(const fs::path& path) {
+  std::error_code error;
+  for (fs::path folder = normal(path); folder.has_relative_path(); folder = folder.parent_path())
+    if (fs::exists(pointer_path(folder), error)) return folder;
+  return std::nullopt;
+}
+
+}  // namespace ds

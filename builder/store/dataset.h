@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/db/database.h"
+#include "builder/recipe/recipe.h"
+#include "builder/store/claims.h"
+#include "builder/store/disk.h"
+#include "builder/store/store.h"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ds {
+
+/// Which dataset a command is about.
+struct DatasetRequest {
+  std::filesystem::path target;        ///< a recipe, or the folder an earlier build wrote
+  std::vector<std::string> overrides;  ///< --set; only with a recipe
+  /// -o; empty: out/<name>, or the target where it is a folder.
+  std::filesystem::path output_folder;
+  /// --store; empty: as before, at first <output folder>/.dsbuild.
+  std::filesystem::path store_folder;
+  bool adopt = false;  ///< --adopt: take the folder though it belongs to another recipe
+};
+
+enum class Access {
+  look,     ///< makes no folder and no file; a dataset never built has an empty database in memory
+  inputs,   ///< as look, whoever owns the folder: for what is about a recipe and its files only
+  records,  ///< as look, without the recipe where a folder is given: for what was done before
+  build,
+};
+
+/// A dataset's recipe, folder, store and database. The folder holds `.dsbuild/dataset`, which names
+/// the dataset's id in the database, the store's folder (relative to `.dsbuild`, so that a dataset
+/// can be moved with its own store) and the recipe the folder belongs to: the one at that place, or
+/// at the same place seen from the folder, so that a project can be moved as a whole.
+struct Dataset {
+  Recipe recipe;
+  std::filesystem::path folder;  ///< absolute
+  DatasetRow row;
+  std::unique_ptr<Claims> claims;  ///< null where there is no store yet
+  std::unique_ptr<Store> store;    ///< null where there is no store yet
+  std::unique_ptr<Database> database;
+};
+
+/// A recipe's folder, where none is given, is out/<name> in the working folder; where nothing of the
+/// recipe lies there, the nearest such folder above it or above the recipe that belongs to it.
+/// Throws Error(usage) for a target that is neither, and for a folder that belongs to another
+/// recipe; Error(recipe) for what `read_recipe` finds; Error(io).
+Dataset open_dataset(const DatasetRequest& request, Access access, Disk& disk);
+
+/// The dataset's folder; where that is what was asked for, without reading the recipe. For what
+/// needs only the manifest.
+std::filesystem::path dataset_folder(const DatasetRequest& request);
+
+/// The recipe that a dataset's folder belongs to, where the folder is no longer where it was built
+/// and the recipe did not move with it: a copy, which is not to be as the recipe wants it now.
+std::optional<std::filesystem::path> recipe_left_behind(const std::filesystem::path& folder);
+
+/// Whether a dataset's manifest lies there without the `.dsbuild` that a build puts beside it.
+bool has_lost_state(const std::filesystem::path& folder);
+
+/// The folder above `path` that a build wrote, and nothing where there is none.
+std::optional<std::filesystem::path> enclosing_dataset(const std::filesystem::path& path);
+
+}  // namespace ds

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/store/killed_builds.h"
+
+#include "builder/store/host.h"
+
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unistd.h>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whether another process of this number runs on this machine.
+bool runs_elsewhere(std::int64_t process) {
+  if (process == ::getpid()) return false;
+  return ::kill(static_cast<pid_t>(process), 0) == 0 || errno == EPERM;
+}
+
+/// The process in a name that write_file_atomic gives a temporary, ".NAME.PROCESS.COUNT.tmp".
+std::optional<std::int64_t> process_of_temporary(std::string_view name) {
+  constexpr std::string_view k_ending = ".tmp";
+  if (!name.starts_with('.') || !name.ends_with(k_ending)) return std::nullopt;
+  name.remove_suffix(k_ending.size());
+  const std::size_t count = name.rfind('.');
+  if (count == 0 || count == std::string_view::npos) return std::nullopt;
+  const std::size_t process = name.rfind('.', count - 1);
+  if (process == 0 || process == std::string_view::npos) return std::nullopt;
+  const std::string_view digits = name.substr(process + 1, count - process - 1);
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+  return number;
+}
+
+void remove_temporaries(const fs::path& folder) {
+  // Another process may remove or rename what is being looked at; what vanishes needs no removal.
+  std::error_code error;
+  for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end;
+       at.increment(error)) {
+    const auto process = process_of_temporary(at->path().filename().string());
+    std::error_code ignored;
+    if (process && !runs_elsewhere(*process)) fs::remove(at->path(), ignored);
+  }
+}
+
+}  // namespace
+
+bool was_killed(const BuildRow& build) {
+  return build.outcome == "running" && build.host == host_name() && !runs_elsewhere(build.process);
+}
+
+void clean_up_killed_builds(Dataset& dataset, std::int64_t current) {
+  bool any = false;
+  for (BuildRow build : dataset.database->builds(dataset.row.id)) {
+    if (build.number == current || !was_killed(build)) continue;
+    any = true;
+    build.outcome = "killed";
+    dataset.database->update_build(build);
+  }
+  if (!any) return;
+  remove_temporaries(dataset.folder / "images");
+  remove_temporaries(dataset.folder / "manifest");
+  remove_temporaries(dataset.store->folder());
+}
+
+}  // namespace ds

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/store/store.h"
+
+#include "tracer/base/disk_error.h"
+#include "tracer/base/files.h"
+#include "tracer/base/log.h"
+
+#include <algorithm>
+#include <system_error>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* k_objects = "objects";
+constexpr const char* k_records = "records";
+
+}  // namespace
+
+fs::path Store::path_of(const char* kind, Hash128 hash) const {
+  const std::string hex = hash.hex();
+  return folder_ / kind / hex.substr(0, 2) / hex.substr(2);
+}
+
+std::optional<std::vector<std::byte>> Store::read_whole(const fs::path& file, Hash128 hash) {
+  std::error_code error;
+  if (!fs::exists(file, error)) return std::nullopt;
+  const std::string text = read_text_file(file);
+  if (hash_text(text) != hash) {
+    warn(fmt::format("{}: a file of the store is damaged and is made again", file.string()));
+    disk_.remove(file);
+    return std::nullopt;
+  }
+  const auto bytes = bytes_of(text);
+  return std::vector<std::byte>(bytes.begin(), bytes.end());
+}
+
+Hash128 Store::put(std::span<const std::byte> bytes) {
+  const Hash128 object = hash_bytes(bytes);
+  if (intact(object)) return object;
+  const fs::path file = path_of(k_objects, object);
+  disk_.write(file, bytes);
+  remove_write_permission(file);  // output files may be hard links to it
+  return object;
+}
+
+bool Store::has(Hash128 object) const {
+  std::error_code error;
+  return fs::is_regular_file(path_of(k_objects, object), error);
+}
+
+bool Store::intact(Hash128 object) {
+  return get(object).has_value();
+}
+
+std::optional<std::vector<std::byte>> Store::get(Hash128 object) {
+  return read_whole(path_of(k_objects, object), object);
+}
+
+void Store::place(Hash128 object, const fs::path& target, Placing placing) {
+  const fs::path file = path_of(k_objects, object);
+  if (placing == Placing::copy)
+    disk_.copy(file, target);
+  else
+    disk_.link(file, target);
+}
+
+bool Store::is_object(const fs::path& file, Hash128 object) const {
+  std::error_code absent;
+  return fs::equivalent(file, path_of(k_objects, object), absent);
+}
+
+void Store::put_record(std::string_view text) {
+  disk_.write(path_of(k_records, hash_text(text)), bytes_of(text));
+}
+
+void Store::visit_records(const std::function<void(const std::string& text)>& visit) {
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(folder_ / k_records, error), end;
+       !error && entry != end; entry.increment(error)) {
+    std::error_code vanished;
+    if (!entry->is_regular_file(vanished)) continue;
+    const fs::path& file = entry->path();
+    const auto hash =
+        Hash128::from_hex(file.parent_path().filename().string() + file.filename().string());
+    if (!hash) continue;  // a killed writer's temporary
+    if (const auto bytes = read_whole(file, *hash)) {
+      std::string text(bytes->size(), '\0');
+      std::transform(bytes->begin(), bytes->end(), text.begin(),
+                     [](std::byte b) { return static_cast<char>(b); });
+      visit(text);
+    }
+  }
+}
+
+}  // namespace ds

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/store/disk.h"
+#include "tracer/base/hash.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ds {
+
+/// How an object comes into a dataset's folder.
+enum class Placing {
+  share,  ///< its blocks or its file where writing to the placed file cannot reach the store
+  copy,
+};
+
+/// Content-addressed files, which any number of datasets and processes may share:
+///   objects/ab/cdef...   bytes whose XXH3-128 is abcdef..., read-only
+///   records/ab/cdef...   what was made from which key (see made_record.h), named by the hash of
+///   the text
+/// A file stands under its name only once it is whole and on the disk. What is read back is hashed
+/// again: a damaged file is removed and counts as absent, so nothing wrong leaves the store.
+class Store {
+ public:
+  Store(std::filesystem::path folder, Disk& disk) : folder_(std::move(folder)), disk_(disk) {}
+  const std::filesystem::path& folder() const { return folder_; }
+
+  /// Throws Error(io) where the disk refuses.
+  Hash128 put(std::span<const std::byte> bytes);
+  /// Whether there is such an object, without reading it.
+  bool has(Hash128 object) const;
+  /// Whether there is such an object, whole.
+  bool intact(Hash128 object);
+  std::optional<std::vector<std::byte>> get(Hash128 object);
+  /// Makes `target` the object's bytes. `intact` must have been asked before.
+  void place(Hash128 object, const std::filesystem::path& target, Placing placing = Placing::share);
+  /// Whether the file is a hard link to the object.
+  bool is_object(const std::filesystem::path& file, Hash128 object) const;
+
+  void put_record(std::string_view text);
+  /// Calls `visit` with the text of every whole record, in no particular order.
+  void visit_records(const std::function<void(const std::string& text)>& visit);
+
+ private:
+  std::filesystem::path path_of(const char* kind, Hash128 hash) const;
+  std::optional<std::vector<std::byte>> read_whole(const std::filesystem::path& file, Hash128 hash);
+
+  std::filesystem::path folder_;
+  Disk& disk_;
+};
+
+}  // namespace ds

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/db/database.h"
+#include "builder/store/claims.h"
+#include "builder/store/store.h"
+
+#include <memory>
+
+namespace ds {
+
+/// Opens or makes the store's database. A damaged one is set aside as "dsbuild.sqlite.damaged" with
+/// a warning, and a new one is filled from the records that stand beside the objects: nothing is
+/// traced again for it. Datasets and build logs are lost with it; the next build of a recipe enters
+/// its dataset anew. Throws Error(io) where it is damaged and another process has it open.
+std::unique_ptr<Database> open_database(Store& store, Claims& claims);
+
+}  // namespace ds

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/plan/keys.h"
+
+#include "tracer/base/canonical.h"
+#include "tracer/device/program_text.h"
+#include "tracer/device/program_tokens.h"
+#include "tracer/render/engine_text.h"
+#include "tracer/scene/sdl.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <set>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One image of tests/data/tiny, to be changed one property at a time.
+class KeysTest : public testing::Test {
+ protected:
+  KeysTest()
+      : recipe_(read_recipe(DS_SOURCE_DIR "/tests/data/tiny/recipe.toml", {})),
+        image_(expand(recipe_).front()) {}
+
+  ImageKeys keys() {
+    Inputs inputs(database_);
+    TextSet texts;
+    KeyMaker maker(recipe_, inputs, texts);
+    ImageKeys keys = maker.keys(image_);
+    keys.kept = maker.kept_key(image_, keys);
+    return keys;
+  }
+
+  Database database_{fs::path()};
+  Recipe recipe_;
+  ImageSpec image_;
+};
+
+/// Which keys a change moves.
+struct Moved {
+  bool render, geometry, image;
+  bool operator==(const Moved&) const = default;
+};
+std::ostream& operator<<(std::ostream& out, Moved m) {
+  return out << "render " << m.render << ", geometry " << m.geometry << ", image file " << m.image;
+}
+Moved moved(const ImageKeys& a, const ImageKeys& b) {
+  return {a.render != b.render, a.geometry != b.geometry,
+          a.outputs.front().key != b.outputs.front().key};
+}
+
+TEST_F(KeysTest, AreTheSameEachTime) {
+  const ImageKeys a = keys(), b = keys();
+  EXPECT_EQ(moved(a, b), (Moved{false, false, false}));
+  EXPECT_EQ(a.parts, b.parts);
+  EXPECT_EQ(a.files, b.files);
+}
+
+TEST_F(KeysTest, NamesNeverMatter) {
+  const ImageKeys before = keys();
+  image_.id = "x/0";
+  image_.model_name = "x";
+  image_.view = "other";
+  image_.class_path = "some/class";
+  image_.split = "test";
+  recipe_.name = "other";
+  recipe_.licence = "other";
+  EXPECT_EQ(moved(before, keys()), (Moved{false, false, false}));
+}
+
+/// Pictures of one `kept` key go on from each other's films: what only says when to stop is not in
+/// it, whatever else there is.
+TEST_F(KeysTest, TheKeptKeyLeavesOutWhenToStop) {
+  const auto kept_with = [&](const std::function<void(EngineSettings&)>& change) {
+    const EngineSettings before = image_.engine;
+    change(image_.engine);
+    const Hash128 kept = keys().kept;
+    image_.engine = before;
+    return kept;
+  };
+  const auto nothing = [](EngineSettings&) {};
+  const Hash128 uniform = kept_with(nothing);
+  EXPECT_EQ(kept_with([](EngineSettings& e) { e.spp += 1; }), uniform);
+  EXPECT_NE(kept_with([](EngineSettings& e) { e.seed += 1; }), uniform);
+  EXPECT_NE(kept_with([](EngineSettings& e) { e.depth_total += 1; }), uniform);
+  EXPECT_NE(kept_with([](EngineSettings& e) { e.outlier_limit = 9; }), uniform);
+  image_.engine.target = ErrorTarget{};
+  const Hash128 scheduled = kept_with(nothing);
+  EXPECT_NE(scheduled, uniform);
+  EXPECT_EQ(kept_with([](EngineSettings& e) { e.target->error /= 2; }), scheduled);
+  EXPECT_EQ(kept_with([](EngineSettings& e) { e.target->max_spp *= 2; }), scheduled);
+  EXPECT_EQ(kept_with([](EngineSettings& e) { e.spp += 1; }), scheduled);
+  EXPECT_NE(kept_with([](EngineSettings& e) { e.target->tone_map.gamma = 1; }), scheduled);
+  EXPECT_NE(kept_with([](EngineSettings& e) { e.target->region = ErrorRegion::model; }), scheduled);
+  image_.camera.fov_deg += 1;
+  EXPECT_NE(kept_with(nothing), scheduled);
+}
+
+TEST_F(KeysTest, EachSettingMovesWhatItCanChangeAndNothingElse) {
+  const fs::path other_model = recipe_.models[1], other_material = recipe_.materials[1];
+  struct Case {
+    const char* what;
+    std::function<void()> change;
+    Moved moved;
+    int part;  // of the first five, -1: none
+  };
+  const Case cases[] = {
+      {"model", [&] { image_.model_file = other_model; }, {true, true, true}, 0},
+      {"size", [&] { recipe_.normalise.size_m = 0.2; }, {true, true, true}, 0},
+      {"crease", [&] { recipe_.normalise.crease_deg = 10; }, {true, true, true}, 0},
+      {"material",
+       [&] {
+         image_.material_file =
+             image_.material_file == other_material ? recipe_.materials[0] : other_material;
+       },
+       {true, false, true},
+       1},
+      {"camera", [&] { image_.camera.position.x += 0.01; }, {true, true, true}, 3},
+      {"field of view", [&] { image_.camera.fov_deg = 50; }, {true, true, true}, 3},
+      {"width", [&] { image_.engine.width += 1; }, {true, true, true}, 4},
+      {"spp", [&] { image_.engine.spp += 1; }, {true, false, true}, 4},
+      {"seed", [&] { image_.engine.seed += 1; }, {true, false, true}, 4},
+      {"outlier limit", [&] { image_.engine.outlier_limit = 9; }, {true, false, true}, 4},
+      {"rejected limit", [&] { recipe_.rejected_limit = 0.5; }, {false, false, false}, -1},
+      {"error target", [&] { image_.engine.target = ErrorTarget{}; }, {true, false, true}, 4},
+      {"math", [&] { image_.engine.math = MathMode::fast; }, {true, false, true}, 4},
+      {"tone map",
+       [&] { recipe_.outputs.tone_map = ToneMap{.scale = 3}; },
+       {false, false, true},
+       -1},
+      {"depth", [&] { recipe_.outputs.depth = true; }, {false, false, false}, -1},
+  };
+  const Recipe recipe = recipe_;
+  const ImageSpec image = image_;
+  const ImageKeys before = keys();
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.what);
+    recipe_ = recipe;
+    image_ = image;
+    c.change();
+    const ImageKeys after = keys();
+    EXPECT_EQ(moved(before, after), c.moved);
+    for (int part = 0; part < 5; ++part) {
+      const auto i = static_cast<std::size_t>(part);
+      EXPECT_EQ(before.parts[i] != after.parts[i], part == c.part) << k_part_names[i];
+    }
+  }
+}
+
+/// As KeyMaker's header says them, from whole texts made for this image alone.
+ImageKeys keys_of_whole_texts(const Recipe& recipe, Inputs& inputs, const ImageSpec& image) {
+  const Scene scene = scene_without_model(inputs, image);
+  const std::string program = program_tokens(path_program_text(features_of(scene, image.camera)));
+  TextSet texts;
+  ImageKeys keys;
+  keys.parts[0] =
+      texts.add(canonical_model(inputs.model_geometry(image.model_file), recipe.normalise));
+  keys.parts[1] = texts.add(canonical_material(inputs.material(image.material_file)));
+  keys.parts[2] = texts.add(canonical_environment(inputs.environment(image.environment_folder)));
+  keys.parts[3] = texts.add(canonical_camera(image.camera));
+  keys.parts[4] = texts.add(canonical_engine(image.engine, program));
+  CanonicalText render, kept;
+  kept.add("kind", "film_sums");
+  for (std::size_t i = 0; i < 5; ++i) {
+    const Hash128 unstopped = hash_text(canonical_kept_engine(image.engine, program));
+    render.add(k_part_names[i], keys.parts[i].hex());
+    kept.add(k_part_names[i], (i < 4 ? keys.parts[i] : unstopped).hex());
+  }
+  keys.render = hash_text(render.text());
+  keys.kept = hash_text(kept.text());
+  return keys;
+}
+
+/// One KeyMaker for all images, whatever they share and do not.
+TEST_F(KeysTest, WhatIsSharedGivesTheKeysOfWholeTexts) {
+  Inputs inputs(database_);
+  TextSet texts;
+  KeyMaker maker(recipe_, inputs, texts);
+  std::vector<ImageSpec> images = expand(recipe_);
+  for (const ImageSpec& image : expand(recipe_)) {
+    images.push_back(image);
+    images.back().camera.lens_radius_m = 0.01;
+    images.push_back(image);
+    images.back().engine.target = ErrorTarget{};
+    images.push_back(image);
+    images.back().camera.position.x += 0.01;
+    images.back().engine.width += 1;
+  }
+  std::set<Hash128> different;
+  for (const ImageSpec& image : images) {
+    SCOPED_TRACE(image.id);
+    const ImageKeys wanted = keys_of_whole_texts(recipe_, inputs, image);
+    const ImageKeys made = maker.keys(image);
+    EXPECT_TRUE(std::equal(made.parts.begin(), made.parts.end() - 1, wanted.parts.begin()));
+    EXPECT_EQ(made.render, wanted.render);
+    EXPECT_EQ(maker.kept_key(image, made), wanted.kept);
+    different.insert(made.render);
+    maker.add_texts(image);
+    for (const Hash128 part : made.parts)
+      EXPECT_NE(texts.find(part), nullptr);
+  }
+  EXPECT_EQ(different.size(), images.size());
+}
+
+TEST_F(KeysTest, ALensMovesTheFilmAndNotTheMask) {
+  const ImageKeys before = keys();
+  image_.camera.lens_radius_m = 0.01;
+  const ImageKeys after = keys();
+  EXPECT_EQ(moved(before, after), (Moved{true, false, true}));
+}
+
+TEST_F(KeysTest, AnUnusedStepOfTheNormalisationMovesNothing) {
+  recipe_.normalise.place_on_ground = false;
+  recipe_.normalise.normals = Normals::flat;
+  const ImageKeys before = keys();
+  recipe_.normalise.ground_z_m = 7;
+  recipe_.normalise.crease_deg = 7;
+  EXPECT_EQ(moved(before, keys()), (Moved{false, false, false}));
+}
+
+TEST_F(KeysTest, PathsOfOutputsFollowTheId) {
+  recipe_.outputs.depth = true;
+  const ImageKeys made = keys();
+  ASSERT_EQ(made.outputs.size(), 3U);
+  EXPECT_EQ(made.outputs[0].path, "images/box.off/0.png");
+  EXPECT_EQ(made.outputs[1].path, "images/box.off/0.mask.png");
+  EXPECT_EQ(made.outputs[2].path, "images/box.off/0.depth.exr");
+}
+
+TEST_F(KeysTest, AFileThatCannotBeReadFailsTheSameWayEachTime) {
+  image_.model_file = "/no/such/file.ply";
+  Inputs inputs(database_);
+  std::string first, second;
+  try {
+    inputs.model_geometry(image_.model_file);
+  } catch (const Error& error) {
+    first = error.what();
+  }
+  try {
+    inputs.model_geometry(image_.model_file);
+  } catch (const Error& error) {
+    second = error.what();
+  }
+  EXPECT_NE(first, "");
+  EXPECT_EQ(first, second);
+}
+
+}  // namespace
+}  // namespace ds
