@@ -88,6 +88,9 @@ OIIO::ImageSpec reading_options() {
   return options;
 }
 
+/// The library takes memory for 64 rows at least: 128 MiB of four floats a pixel.
+constexpr int k_most_width = 1 << 17;
+
 /// Of a file of `file_bytes`.
 DecodedImage decode(OIIO::ImageInput& input, const std::string& name, Halves halves,
                     std::size_t file_bytes) {
@@ -102,6 +105,9 @@ DecodedImage decode(OIIO::ImageInput& input, const std::string& name, Halves hal
   if (!believable(spec.width, spec.height) || !tiles_good || spec.depth > 1 || spec.deep)
     fail(ErrorKind::asset, "{}: wanted an image of 1 to {} pixels in {} bytes, found {} x {}{}",
          name, most, file_bytes, spec.width, spec.height, spec.deep ? ", deep" : "");
+  if (spec.width > k_most_width)
+    fail(ErrorKind::asset, "{}: wanted at most {} pixels a row, found {}", name, k_most_width,
+         spec.width);
   const std::optional<SampleType> type = sample_type(spec.format);
   if (!type)
     fail(ErrorKind::asset, "{}: wanted samples of type uint8, uint16, half or float, found {}",
@@ -120,6 +126,10 @@ DecodedImage decode(OIIO::ImageInput& input, const std::string& name, Halves hal
   if (halves == Halves::widen && decoded.type == SampleType::half)
     decoded.type = SampleType::float32;
   const OIIO::TypeDesc format = library_type(decoded.type);
+  // The library reads through a buffer of so many rows, 64 at least, however few the image has.
+  constexpr std::uint64_t k_buffer_bytes = 16 << 20;
+  OIIO::attribute("read_chunk", static_cast<int>(std::clamp<std::uint64_t>(
+                                    k_buffer_bytes / spec.scanline_bytes(true), 1, 256)));
   decoded.samples.resize(static_cast<std::size_t>(spec.image_pixels()) *
                          static_cast<std::size_t>(channels) * format.size());
   if (!input.read_image(0, 0, 0, channels, format, decoded.samples.data()))

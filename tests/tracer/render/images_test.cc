@@ -9,8 +9,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 #include <limits>
 #include <string>
+#include <sys/resource.h>
+#include <unistd.h>
 #include <vector>
 #include <zlib.h>
 
@@ -193,6 +197,37 @@ TEST_F(LoadImage, CutOffFilesAreErrors) {
   const auto exr = encode_film_exr(Film{64, 64, std::vector<float>(64 * 64 * 3, 0.3f), 0});
   EXPECT_THAT(error_of(image_of(std::vector<std::byte>(exr.begin(), exr.end() - 40), "a.exr")),
               HasSubstr("cannot"));
+}
+
+/// Of address space, beyond what the process has.
+void limit_memory(rlim_t more) {
+  std::ifstream statm("/proc/self/statm");
+  rlim_t pages = 0;
+  statm >> pages;
+  const rlim_t most = pages * static_cast<rlim_t>(getpagesize()) + more;
+  const rlimit limit{most, most};
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &limit), 0);
+}
+
+std::string wide_hdr(int width) {
+  return fmt::format("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X {}\n", width) +
+         std::string(30, '\0');
+}
+
+// The library's buffer of 256 rows of 888888 pixels would take 2.7 GB, for a file of 82 bytes.
+TEST_F(LoadImage, WideFilesOfFewBytesTakeLittleMemory) {
+  EXPECT_THAT(error_of(image_of(wide_hdr(888888), "a.hdr")),
+              HasSubstr("wanted at most 131072 pixels a row, found 888888"));
+  Image image = image_of(wide_hdr(131072), "a.hdr");
+  EXPECT_THAT(error_of(image), HasSubstr("cannot"));
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // the library has threads
+  EXPECT_EXIT(
+      {
+        limit_memory(256 << 20);
+        const std::string error = error_of(image);
+        std::_Exit(error.find("not enough memory") == error.npos ? 0 : 1);
+      },
+      testing::ExitedWithCode(0), "");
 }
 
 TEST_F(LoadImage, AFileThatChangedIsAnError) {
