@@ -154,7 +154,7 @@ void load_image(Image& image) {
   const std::size_t pixels =
       static_cast<std::size_t>(meaning.width) * static_cast<std::size_t>(meaning.height);
   std::vector<float> rgb(pixels * 3);
-  std::size_t negative = 0, black = 0;
+  std::size_t negative = 0, black = 0, not_stored = 0;
   for (std::size_t i = 0; i < pixels; ++i) {
     const auto columns = static_cast<std::size_t>(meaning.width);
     const auto stored =
@@ -164,6 +164,8 @@ void load_image(Image& image) {
       color = select(color_of(samples, *stored, meaning, has_alpha, image.use),
                      has_alpha ? samples.alpha(*stored) : 1.0f, image.channel) *
               image.gain;
+    else
+      ++not_stored;
     check_finite(image, color, i, meaning.width);
     for (int c = 0; c < 3; ++c) {
       if (color[c] < 0) ++negative;
@@ -177,7 +179,12 @@ void load_image(Image& image) {
   if (negative > 0)
     warn(fmt::format("{}: {} negative values of {} are taken as 0", name, negative, pixels * 3));
   if (!meaning.unused.empty()) warn(fmt::format("{}: {} are not used", name, meaning.unused));
-  if (black == pixels && image.use == ImageUse::light)
+  if (not_stored == pixels)
+    warn(
+        fmt::format("{}: its data window lies wholly outside of its display window, which is the "
+                    "picture: it is black throughout",
+                    name));
+  else if (black == pixels && image.use == ImageUse::light)
     warn(fmt::format("{}: all {} pixels are black, so it gives no light", name, pixels));
 }
 

@@ -17,7 +17,8 @@ namespace ds {
 /// same bits on every machine for the same decoded file.
 ///
 /// Warnings: negative values, which resampling leaves in HDR images, become 0, and are counted;
-/// channels and parts that nothing reads; a light's image that is black throughout. Throws
+/// channels and parts that nothing reads; a light's image that is black throughout; one of whose
+/// picture nothing is stored. Throws
 /// Error(asset) for a file that is missing, is no image, is cut off, promises more pixels than a
 /// file of its size can hold or over 2^28, has channels that make no picture, has another hash than
 /// `content` (unless that is zero), lacks the channel asked for, is a cube map for a light, or

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/canonical.h"
 #include "tracer/base/error.h"
+#include "tracer/scene/scene_reads.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
 
@@ -166,7 +167,8 @@ class Writer {
 
   void write(const Object& object) {
     prefix_ = "objects." + object.name;
-    add("mesh", std::string_view(geometry_hash(object.mesh).hex()));
+    const Hash128 mesh = geometry_hash(object.mesh, reads_of(scene_, object.material));
+    add("mesh", std::string_view(mesh.hex()));
     add("material", std::string_view(material_name(object.material)));
     add("id", object.id);
     add("camerainvisible", object.camera_invisible);

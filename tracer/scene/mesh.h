@@ -41,6 +41,12 @@ using FileMesh = BasicMesh<Vec3d>;
 /// Each position rounded on its own.
 Mesh in_floats(FileMesh mesh);
 
+/// What a mesh may have beside places and normals, and textures may read.
+struct MeshExtras {
+  bool uvs = false, colors = false;
+  bool operator==(const MeshExtras&) const = default;
+};
+
 /// A coordinate beyond this (in the file's unit) counts as not finite: it is what a damaged file
 /// holds, and its square still fits a float.
 inline constexpr double k_farthest_coordinate = 1e18;
@@ -168,11 +174,30 @@ struct NormaliseOptions {
 /// corners.
 Mesh normalise(const FileMesh& mesh, const NormaliseOptions& options);
 
-/// Hash of positions, normals, uvs, triangles and, where there are any, colours, bit by bit and in
-/// order: what a re-saved file keeps. Files of one geometry in different formats, headers, comments or spellings of equal
-/// numbers have the same hash once read.
-Hash128 geometry_hash(const Mesh& mesh);
+/// Hash of positions, normals, triangles and of those of uvs and colours that are asked for and
+/// there, bit by bit and in order: what a re-saved file keeps. Files of one geometry in different
+/// formats, headers, comments or spellings of equal numbers have the same hash once read.
+Hash128 geometry_hash(const Mesh& mesh, MeshExtras extras = {true, true});
 /// The same hash where all positions are floats' values.
-Hash128 geometry_hash(const FileMesh& mesh);
+Hash128 geometry_hash(const FileMesh& mesh, MeshExtras extras = {true, true});
+
+/// The hash of a mesh less its uvs and colours, and theirs: zero where it has none.
+struct MeshHashes {
+  Hash128 shape, uvs, colors;
+  bool operator==(const MeshHashes&) const = default;
+};
+MeshHashes mesh_hashes(const FileMesh& mesh);
+
+/// The least and the greatest coordinates.
+struct Box {
+  Vec3d least, most;
+  bool operator==(const Box&) const = default;
+};
+/// Of the triangles' corners, which all vertices are of a mesh that was read. Of none: all 0.
+Box bounds_of(const FileMesh& mesh);
+Box bounds_of(const Mesh& mesh);
+/// The box of the normalised mesh, from the file's; with Centring::mass as with Centring::box, since
+/// a box does not tell where the mass is.
+Box normalised_box(const Box& file, const NormaliseOptions& options);
 
 }  // namespace ds

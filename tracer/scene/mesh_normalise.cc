@@ -14,10 +14,6 @@
 namespace ds {
 namespace {
 
-struct Box {
-  Vec3d least, most;
-};
-
 Vec3d turned(Vec3d v, UpAxis up) {
   return up == UpAxis::y ? Vec3d{v.x, -v.z, v.y} : v;
 }
@@ -35,14 +31,35 @@ std::vector<Vec3d> turned_positions(const FileMesh& mesh, UpAxis up) {
   return positions;
 }
 
-Box bounds(const std::vector<Vec3d>& positions) {
-  Box box{positions[0], positions[0]};
-  for (const Vec3d p : positions) {
+Vec3d in_double(Vec3 p) {
+  return to_double(p);
+}
+Vec3d in_double(Vec3d p) {
+  return p;
+}
+
+template <typename Position>
+Box bounds(const std::vector<Position>& positions) {
+  if (positions.empty()) return {};
+  Box box{in_double(positions[0]), in_double(positions[0])};
+  for (const Position& position : positions) {
+    const Vec3d p = in_double(position);
     box.least = {std::min(box.least.x, p.x), std::min(box.least.y, p.y),
                  std::min(box.least.z, p.z)};
     box.most = {std::max(box.most.x, p.x), std::max(box.most.y, p.y), std::max(box.most.z, p.z)};
   }
   return box;
+}
+
+double scale_of(const Box& box, const NormaliseOptions& options) {
+  const Vec3d side = box.most - box.least;
+  const double longest = std::max({side.x, side.y, side.z});
+  DS_ASSERT(longest > 0);
+  return options.size_m > 0 ? options.size_m / longest : 1;
+}
+
+Vec3d ground_of(const NormaliseOptions& options) {
+  return {0, 0, options.place_on_ground ? options.ground_z_m : 0};
 }
 
 /// Area-weighted centroid of the surface, summed about `origin` to keep the digits of a far mesh.
@@ -75,12 +92,9 @@ std::vector<Vec3> placed_positions(const std::vector<Vec3d>& positions,
                                    const std::vector<Triangle>& triangles,
                                    const NormaliseOptions& options) {
   const Box box = bounds(positions);
-  const Vec3d side = box.most - box.least;
-  const double longest = std::max({side.x, side.y, side.z});
-  DS_ASSERT(longest > 0);
-  const double scale = options.size_m > 0 ? options.size_m / longest : 1;
+  const double scale = scale_of(box, options);
   const Vec3d centre = centre_of(positions, triangles, box, options);
-  const Vec3d ground{0, 0, options.place_on_ground ? options.ground_z_m : 0};
+  const Vec3d ground = ground_of(options);
   std::vector<Vec3> placed;
   placed.reserve(positions.size());
   for (const Vec3d p : positions)
@@ -91,13 +105,7 @@ std::vector<Vec3> placed_positions(const std::vector<Vec3d>& positions,
 /// What single floats leave of a body this far away is not the body.
 void check_digits(const std::vector<Vec3>& placed) {
   constexpr double k_least_digits = 1e-3;  // of its size: half a pixel of one that fills a picture
-  Vec3d least = to_double(placed[0]), most = least;
-  for (const Vec3 p : placed) {
-    least = {std::min(least.x, double{p.x}), std::min(least.y, double{p.y}),
-             std::min(least.z, double{p.z})};
-    most = {std::max(most.x, double{p.x}), std::max(most.y, double{p.y}),
-            std::max(most.z, double{p.z})};
-  }
+  const auto [least, most] = bounds(placed);
   const Vec3d side = most - least;
   const double size = std::max({side.x, side.y, side.z});
   const double farthest = std::max({-least.x, -least.y, -least.z, most.x, most.y, most.z});
@@ -197,6 +205,24 @@ Mesh normalise(const FileMesh& mesh, const NormaliseOptions& options) {
       options.normals == Normals::flat
           ? flat_corner_normals(positions, mesh.triangles)
           : smooth_corner_normals(positions, mesh.triangles, welded, options.crease_deg));
+}
+
+Box bounds_of(const FileMesh& mesh) {
+  return bounds(mesh.positions);
+}
+
+Box bounds_of(const Mesh& mesh) {
+  return bounds(mesh.positions);
+}
+
+Box normalised_box(const Box& file, const NormaliseOptions& options) {
+  const Box box =
+      bounds(std::vector<Vec3d>{turned(file.least, options.up), turned(file.most, options.up)});
+  NormaliseOptions by_box = options;
+  if (by_box.centre == Centring::mass) by_box.centre = Centring::box;
+  const double scale = scale_of(box, options);
+  const Vec3d centre = centre_of({}, {}, box, by_box), ground = ground_of(options);
+  return {(box.least - centre) * scale + ground, (box.most - centre) * scale + ground};
 }
 
 }  // namespace ds

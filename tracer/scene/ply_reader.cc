@@ -12,7 +12,7 @@
 
 // Of a PLY file's elements the reader takes
 //   vertex     x y z, nx ny nz, a pair of texture coordinates under any of three names, and a colour
-//              (red green blue, alpha; also r g b a and diffuse_red ...)
+//              (red green blue, alpha; also r g b a and diffuse_red ...; alpha alone is of white)
 //   face       vertex_index or vertex_indices; texcoord, two values for each of these; a colour
 //   tristrips  vertex_index or vertex_indices, strips of triangles that an index below 0 ends
 // in any order; everything else is passed over. Properties may have any order and type. Colours of
@@ -86,6 +86,20 @@ Slot slot_of(const PlyProperty& property) {
   return color_slot_of(property);
 }
 
+/// Whether there is a whole colour, or an alpha alone, whose colour is white.
+bool has_color(const std::array<int, k_slots + 1>& found) {
+  const int colors = (found[k_red] > 0) + (found[k_green] > 0) + (found[k_blue] > 0);
+  return colors == 3 || (colors == 0 && found[k_alpha] > 0);
+}
+
+/// What stands where a file says nothing: white, and as alpha what unit_colors takes for none.
+Row first_row() {
+  Row row{};
+  row[k_red] = row[k_green] = row[k_blue] = 1;
+  row[k_alpha] = -1;
+  return row;
+}
+
 /// What a colour's value of that type is divided by.
 double color_range(PlyType type) {
   return type == PlyType::uint8 ? 255 : type == PlyType::uint16 ? 65535 : 1;
@@ -111,7 +125,7 @@ VertexLayout layout_of(const PlyElement& vertex, const std::string& name) {
            name, vertex.line, k_slot_names[slot].name);
   layout.has_normals = found[k_nx] > 0 && found[k_ny] > 0 && found[k_nz] > 0;
   layout.has_uvs = found[k_u] > 0 && found[k_v] > 0;
-  layout.has_colors = found[k_red] > 0 && found[k_green] > 0 && found[k_blue] > 0;
+  layout.has_colors = has_color(found);
   return layout;
 }
 
@@ -141,8 +155,7 @@ void read_vertices(Source& source, const PlyHeader& header, const PlyElement& el
   if (layout.has_uvs) out.uvs.reserve(expected);
   if (layout.has_colors) out.colors.reserve(expected);
 
-  Row row{};
-  row[k_alpha] = -1;
+  Row row = first_row();
   for (std::uint64_t i = 0; i < element.count; ++i) {
     source.begin(element, i);
     for (std::size_t p = 0; p < layout.slots.size(); ++p) {
@@ -184,7 +197,7 @@ std::size_t corner_list_of(const PlyElement& face, const std::string& name) {
 struct FaceLayout {
   std::size_t corners = 0;   ///< number of the property that lists them
   std::size_t uvs = 0;       ///< likewise; that of no property where there are none
-  std::vector<Slot> colors;  ///< one a property; those of colours only where all three are there
+  std::vector<Slot> colors;  ///< one a property; those of colours only where has_color
   bool has_colors = false;
 };
 
@@ -200,7 +213,7 @@ FaceLayout face_layout_of(const PlyElement& face, const std::string& name) {
     const Slot slot = color_slot_of(property);
     layout.colors.push_back(found[slot]++ > 0 ? k_skipped : slot);
   }
-  layout.has_colors = found[k_red] > 0 && found[k_green] > 0 && found[k_blue] > 0;
+  layout.has_colors = has_color(found);
   if (!layout.has_colors) std::fill(layout.colors.begin(), layout.colors.end(), k_skipped);
   return layout;
 }
@@ -230,8 +243,7 @@ void read_faces(Source& source, const PlyHeader& header, const PlyElement& eleme
   if (has_uvs) out.corner_uvs.resize(out.corners.size());
   if (layout.has_colors) out.face_colors.resize(out.face_ends.size(), {1, 1, 1, 1});
   bool any_uv = false;
-  Row row{};
-  row[k_alpha] = -1;
+  Row row = first_row();
   for (std::uint64_t i = 0; i < element.count; ++i) {
     source.begin(element, i);
     for (std::size_t p = 0; p < element.properties.size(); ++p) {

@@ -119,10 +119,22 @@ PropertySet PropertySet::read(const std::filesystem::path& file, Diagnostics& di
 
 void PropertySet::set(Property property) {
   const auto [entry, is_new] = index_.emplace(property.name, properties_.size());
-  if (is_new)
+  if (is_new) {
     properties_.push_back(std::move(property));
+    return;
+  }
+  note_repeat(properties_[entry->second], property);
+  properties_[entry->second] = std::move(property);
+}
+
+void PropertySet::note_repeat(const Property& first, const Property& last) {
+  const auto known =
+      std::find_if(repeated_.begin(), repeated_.end(),
+                   [&](const RepeatedProperty& one) { return one.name == last.name; });
+  if (known != repeated_.end())
+    known->last = last.place;
   else
-    properties_[entry->second] = std::move(property);
+    repeated_.push_back({last.name, first.place, last.place});
 }
 
 const Property* PropertySet::find(std::string_view name) const {

@@ -21,13 +21,19 @@ namespace ds {
 ///     value    = word | '"' text '"' | "'" text "'" | "{[" base64 "]}"
 ///
 /// A line may end in CR LF. Nothing escapes a quote: use the other kind. A later line of the same
-/// name replaces the earlier one's values and keeps its position. A blob is kept as the text
+/// name replaces the earlier one's values and keeps its position, as in LuxCore. A blob is kept as the text
 /// between its brackets.
 struct Property {
   std::string name;
   std::vector<std::string> values;
   SourcePlace place;  ///< of the line that counts
   bool used = false;  ///< a reader has taken it; see `PropertySet::unused`
+};
+
+/// A name that stands in several lines.
+struct RepeatedProperty {
+  std::string name;
+  SourcePlace first, last;
 };
 
 /// The properties of one file, in the order in which their names first appear.
@@ -56,11 +62,16 @@ class PropertySet {
   /// where there is none.
   const Property* first_below(std::string_view prefix) const;
   std::vector<const Property*> unused() const;
+  /// In order of their second appearance.
+  const std::vector<RepeatedProperty>& repeated() const { return repeated_; }
 
  private:
   void set(Property property);
 
+  void note_repeat(const Property& first, const Property& last);
+
   std::vector<Property> properties_;
+  std::vector<RepeatedProperty> repeated_;
   std::map<std::string, std::size_t, std::less<>> index_;
 };
 

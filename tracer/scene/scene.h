@@ -58,6 +58,13 @@ struct Texture {
   int image = -1;  ///< index into Scene::images (imagemap)
 };
 
+/// An input whose images' pixels alone tell whether it is physical (texture_bounds.h).
+struct InputOfPixels {
+  std::string subject;   ///< "m.mat:3: scene.materials.body.kd"
+  std::string property;  ///< "kd"
+  TextureRef value;
+};
+
 struct Material {
   std::string name;
   int type = 0;                    ///< row of material_types()
@@ -71,6 +78,7 @@ struct Material {
   /// A line for each input out of its physical range ("m.mat:3: ...kd: wanted ..."). No part of any
   /// key.
   std::vector<std::string> unphysical;
+  std::vector<InputOfPixels> of_pixels;
 };
 
 enum class LightKind { point, spot, sun, constant_infinite, infinite };

@@ -32,7 +32,7 @@ inline constexpr std::uint32_t k_model_object_id = 1;
 
 /// Canonical texts for the render key: everything that can change a pixel, defaults filled in,
 /// floats exact, in an order that does not depend on the file's; images by content hash, meshes by
-/// geometry_hash. Names are those of the SDL ("materials.body.kd = 0x1p-1 0x1p-1 0x1p-1"). The tone
+/// geometry_hash, with the uvs and colours that their materials read. Names are those of the SDL ("materials.body.kd = 0x1p-1 0x1p-1 0x1p-1"). The tone
 /// map is not in it (it belongs to the files stage).
 std::string canonical_material(const Scene& material);
 std::string canonical_environment(const Scene& environment);

@@ -32,6 +32,7 @@ Scene read_material(const std::filesystem::path& file) {
   if (diagnostics.empty() && reader.scene.materials.empty())
     diagnostics.add({file.string()}, "wanted a material, found no scene.materials");
   diagnostics.throw_if_any();
+  warn_of_repeats(reader.properties);
   Scene material = prune_to_last_material(std::move(reader.scene));
   warn_of_materials(material);
   return material;
@@ -63,6 +64,8 @@ Scene read_environment(const std::filesystem::path& folder) {
   constexpr SdlKind k_film[] = {SdlKind::film};
   report_unused(film, k_film, "a film file");
   diagnostics.throw_if_any();
+  warn_of_repeats(reader.properties);
+  warn_of_repeats(film.properties);
   Scene environment = prune_environment(std::move(reader.scene));
   warn_of_materials(environment);
   warn_of_environment(environment, folder.string());

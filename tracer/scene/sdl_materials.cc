@@ -165,8 +165,7 @@ void read_material_node(SdlNode node) {
   DS_ASSERT(material.type >= 0);
   node.read_row(material_types()[static_cast<std::size_t>(material.type)], material.inputs,
                 material.numbers);
-  material.unphysical = find_unphysical(
-      node, material_types()[static_cast<std::size_t>(material.type)], material.inputs);
+  find_unphysical(node, material_types()[static_cast<std::size_t>(material.type)], material);
   for (const Finish& finish : finishes())
     if (finish.type == type) finish.finish(node, material);
   const int index = static_cast<int>(reader.scene.materials.size());

@@ -30,6 +30,8 @@ class Pruner {
         child = this->material(child);
       inputs(material.inputs);
       material.emission.texture = texture(material.emission.texture);
+      for (InputOfPixels& input : material.of_pixels)
+        input.value.texture = texture(input.value.texture);
     });
   }
   Scene& result() { return to_; }

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tracer/scene/properties.h"
 #include "tracer/scene/scene.h"
 
 #include <string>
 
 namespace ds {
 
+/// Warns of each property that stands in the file more than once.
+void warn_of_repeats(const PropertySet& properties);
 /// Warns of each input of its materials that is out of its physical range.
 void warn_of_materials(const Scene& scene);
 /// Warns of an environment that can be traced and is hardly meant so: one that gives no light, and

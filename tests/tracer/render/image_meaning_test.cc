@@ -220,6 +220,20 @@ TEST_F(Meaning, ACubeIsNoLight) {
   EXPECT_THAT(error_of(file.bytes(), "a.exr", ImageUse::light), HasSubstr("faces of a cube"));
 }
 
+TEST_F(Meaning, APictureOfWhichNothingIsStoredIsSaid) {
+  ExrFile outside;
+  outside.display = {0, 0, 3, 3};
+  outside.data = {4, 0, 7, 3};
+  for (const ImageUse use : {ImageUse::light, ImageUse::texture}) {
+    const std::string name = use == ImageUse::light ? "light.exr" : "texture.exr";
+    testing::internal::CaptureStderr();
+    EXPECT_THAT(loaded(outside.bytes(), name, use).rgb, Each(0.0f));
+    EXPECT_THAT(testing::internal::GetCapturedStderr(),
+                testing::EndsWith(name + ": its data window lies wholly outside of its display "
+                                         "window, which is the picture: it is black throughout\n"));
+  }
+}
+
 TEST_F(Meaning, ABlackLightIsSaid) {
   ExrFile file;
   file.value = [](const std::string&, int, int) { return 0.0f; };

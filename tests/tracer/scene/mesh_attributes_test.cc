@@ -228,6 +228,33 @@ TEST(OffReader, CountsAStrayLastLine) {
   EXPECT_THAT(error_of(file + "3 0 2 1\n"), HasSubstr("m:11: text behind the last face"));
 }
 
+TEST(PlyReader, AlphaAloneIsOfWhite) {
+  for (const char* type : {"uchar", "float"}) {
+    const std::string half = std::string_view(type) == "uchar" ? "51" : "0.2";
+    const std::string whole = std::string_view(type) == "uchar" ? "255" : "1";
+    const Model vertices = parse_model(
+        fmt::format("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                    "property float z\nproperty {} alpha\nelement face 1\n"
+                    "property list uchar int vertex_index\nend_header\n"
+                    "0 0 0 {}\n1 0 0 {}\n0 1 0 {}\n3 0 1 2\n",
+                    type, half, whole, half),
+        "m");
+    EXPECT_TRUE(vertices.report.has_colors);
+    ASSERT_EQ(vertices.mesh.colors.size(), 3);
+    EXPECT_EQ(vertices.mesh.colors[0], (MeshColor{1, 1, 1, 0.2F}));
+    EXPECT_EQ(vertices.mesh.colors[1], k_white);
+    const Model faces = parse_model(
+        fmt::format("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                    "property float z\nelement face 1\n"
+                    "property list uchar int vertex_index\nproperty {} alpha\nend_header\n"
+                    "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 {}\n",
+                    type, half),
+        "m");
+    ASSERT_EQ(faces.mesh.colors.size(), 3);
+    EXPECT_EQ(faces.mesh.colors[2], (MeshColor{1, 1, 1, 0.2F}));
+  }
+}
+
 TEST(GeometryHash, HoldsColoursWhereThereAreAny) {
   const auto hash = [](const std::string& text) {
     return geometry_hash(parse_model(text, "m").mesh);

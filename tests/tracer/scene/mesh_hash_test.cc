@@ -106,6 +106,44 @@ TEST(GeometryHash, ChangesWithEveryPart) {
   EXPECT_NE(geometry_hash(swapped), hash);
 }
 
+TEST(GeometryHash, HoldsOfUvsAndColoursWhatIsAskedFor) {
+  const std::string file =
+      "STNOFF 3 1 0\n0 0 0 0 0 1 0 0\n1 0 0 0 0 1 1 0\n0 1 0 0 0 1 0 1\n3 0 1 2\n";
+  const FileMesh mesh = parse_model(file, "m").mesh;
+  FileMesh other = mesh;
+  other.uvs[0].x = 0.5F;
+  EXPECT_EQ(geometry_hash(other, MeshExtras{}), geometry_hash(mesh, MeshExtras{}));
+  EXPECT_EQ(geometry_hash(other, {false, true}), geometry_hash(mesh, {false, true}));
+  EXPECT_NE(geometry_hash(other, {true, false}), geometry_hash(mesh, {true, false}));
+  other = mesh;
+  other.colors.assign(3, {1, 0, 0, 1});
+  EXPECT_EQ(geometry_hash(other, {true, false}), geometry_hash(mesh, {true, false}));
+  EXPECT_NE(geometry_hash(other, {false, true}), geometry_hash(mesh, {false, true}));
+  // A mesh that has none is the same mesh, whatever is asked for.
+  FileMesh bare = mesh;
+  bare.uvs.clear();
+  EXPECT_EQ(geometry_hash(bare, MeshExtras{}), geometry_hash(mesh, MeshExtras{}));
+  EXPECT_EQ(geometry_hash(bare), geometry_hash(bare, MeshExtras{}));
+}
+
+TEST(MeshHashes, EachIsOfItsPart) {
+  const std::string file =
+      "STNOFF 3 1 0\n0 0 0 0 0 1 0 0\n1 0 0 0 0 1 1 0\n0 1 0 0 0 1 0 1\n3 0 1 2\n";
+  const FileMesh mesh = parse_model(file, "m").mesh;
+  const MeshHashes hashes = mesh_hashes(mesh);
+  EXPECT_EQ(hashes.shape, geometry_hash(mesh, MeshExtras{}));
+  EXPECT_NE(hashes.uvs, Hash128{});
+  EXPECT_EQ(hashes.colors, Hash128{});
+  FileMesh other = mesh;
+  other.uvs[0].x = 0.5F;
+  EXPECT_EQ(mesh_hashes(other).shape, hashes.shape);
+  EXPECT_NE(mesh_hashes(other).uvs, hashes.uvs);
+  other = mesh;
+  other.colors.assign(3, {1, 0, 0, 1});
+  EXPECT_EQ(mesh_hashes(other).shape, hashes.shape);
+  EXPECT_NE(mesh_hashes(other).colors, Hash128{});
+}
+
 TEST(GeometryHash, IsTheSameOnEveryMachine) {
   // The value a first run gave: a change here makes every dataset stale.
   EXPECT_EQ(hash_of(k_tetra_off).hex(), "4ccb2b2ab92b69a6fe192b421ff72c0e");

@@ -343,5 +343,34 @@ TEST(Normalise, GivesTheSameBitsOnEveryMachine) {
             "850b24596518aeda843e0e9407d265bd");
 }
 
+void expect_near(Vec3d a, Vec3d b) {
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(a[axis], b[axis], 1e-5 * (1 + std::abs(a[axis])));
+}
+
+TEST(NormalisedBox, IsTheBoxOfTheNormalisedMesh) {
+  const FileMesh source = model(sheet_off());
+  NormaliseOptions options;
+  for (const UpAxis up : {UpAxis::y, UpAxis::z})
+    for (const double size_m : {0.0, 0.16, 160.0})
+      for (const bool on_ground : {false, true}) {
+        options.up = up;
+        options.size_m = size_m;
+        options.place_on_ground = on_ground;
+        for (const Centring centre : {Centring::none, Centring::box}) {
+          options.centre = centre;
+          const Box box = normalised_box(bounds_of(source), options);
+          const Box placed = bounds_of(normalise(source, options));
+          expect_near(box.least, placed.least);
+          expect_near(box.most, placed.most);
+        }
+        options.centre = Centring::mass;
+        const Box box = normalised_box(bounds_of(source), options);
+        const Box placed = bounds_of(normalise(source, options));
+        expect_near(box.most - box.least, placed.most - placed.least);
+        EXPECT_NEAR(box.least.z, placed.least.z, 1e-5 * (1 + std::abs(placed.least.z)));
+      }
+}
+
 }  // namespace
 }  // namespace ds

@@ -111,5 +111,19 @@ TEST(Properties, UnusedOnesAreKnown) {
   EXPECT_EQ(set.unused()[0]->name, "a.bc");
 }
 
+// What LuxCore 2.11's Properties does: the last line counts, in the first one's place.
+TEST(Properties, TheLastOfANameCountsAndIsToldOf) {
+  Diagnostics diagnostics(ErrorKind::asset);
+  const PropertySet set =
+      PropertySet::parse("a.x = 1\na.y = 2\na.x = 3\n\na.x = 4\n", "a.scn", diagnostics);
+  EXPECT_TRUE(diagnostics.empty());
+  EXPECT_THAT(set.find("a.x")->values, ElementsAre("4"));
+  EXPECT_THAT(set.names_below("a"), ElementsAre("x", "y"));
+  ASSERT_EQ(set.repeated().size(), 1);
+  EXPECT_EQ(set.repeated()[0].name, "a.x");
+  EXPECT_EQ(set.repeated()[0].first.line, 1);
+  EXPECT_EQ(set.repeated()[0].last.line, 5);
+}
+
 }  // namespace
 }  // namespace ds

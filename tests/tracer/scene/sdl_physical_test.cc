@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracer/scene/sdl_physical.h"
-
 #include "tests/tracer/scene/sdl_files_for_tests.h"
+#include "tracer/scene/texture_bounds.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,6 +10,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::EndsWith;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 std::vector<std::string> found(std::string_view text) {
@@ -102,6 +102,74 @@ TEST(SdlPhysical, OnlyWhatIsUsedIsSaid) {
                            "1 1: it gives back more light than it gets")));
 }
 
+/// What is found where every image's pixels go up to `most`, times its gain; `looked_at` counts
+/// the images.
+std::vector<std::string> found_by_pixels(std::string_view text, float most,
+                                         const std::string& image = "t.png",
+                                         int* looked_at = nullptr) {
+  const ds::testing::SdlFolder folder;
+  folder.write(image, "not read here");
+  Scene scene = folder.material(std::string("scene.textures.t.type = imagemap\n") +
+                                "scene.textures.t.file = " + image + "\n" + std::string(text));
+  std::vector<std::string> lines = add_unphysical_of_pixels(scene, [&](const Image& read) {
+    if (looked_at != nullptr) ++*looked_at;
+    const float high = most * read.gain;
+    return InputBounds{{0, 0, 0}, {high, high, high}};
+  });
+  for (const Material& material : scene.materials)
+    EXPECT_EQ(material.unphysical.size(), lines.size());
+  return lines;
+}
+
+TEST(SdlPhysical, AnImagesBrightestPixelTimesItsGainCounts) {
+  const std::string gain = "scene.textures.t.gain = 4\nscene.materials.a.kd = t\n";
+  EXPECT_THAT(found_by_pixels(gain, 0.5f),
+              ElementsAre(EndsWith("m.scn:4: scene.materials.a.kd: wanted numbers in [0, 1], found "
+                                   "a texture that goes up to 2: it gives back more light than it "
+                                   "gets")));
+  EXPECT_THAT(found_by_pixels(gain, 0.25f), IsEmpty());
+  EXPECT_THAT(
+      found_by_pixels("scene.textures.s.type = scale\nscene.textures.s.texture1 = t\n"
+                      "scene.textures.s.texture2 = 1 3 1\nscene.materials.a.kd = s\n",
+                      0.5f),
+      ElementsAre(EndsWith("found a texture that goes up to 0.5 1.5 0.5: it gives back more "
+                           "light than it gets")));
+  // Floats have no greatest value.
+  EXPECT_EQ(found_by_pixels("scene.materials.a.kd = t\n", 7, "t.exr").size(), 1);
+  // White, but for rounding.
+  EXPECT_THAT(found_by_pixels("scene.materials.a.kd = t\n", 1.00001f, "t.exr"), IsEmpty());
+}
+
+TEST(SdlPhysical, ImagesThatCannotBeTooBrightAreNotRead) {
+  int looked_at = 0;
+  for (const char* text :
+       {"scene.materials.a.kd = t\n", "scene.textures.t.gain = 0.5\nscene.materials.a.kd = t\n",
+        "scene.textures.t.gain = 9\nscene.materials.a.emission = t\n"})
+    EXPECT_THAT(found_by_pixels(text, 99, "t.png", &looked_at), IsEmpty());
+  EXPECT_EQ(looked_at, 0);
+}
+
+TEST(SdlPhysical, ColoursOfMeshesReachToOne) {
+  const std::string color = "scene.textures.c.type = hitpointcolor\n";
+  EXPECT_THAT(found(color + "scene.materials.a.kd = c\n"), IsEmpty());
+  EXPECT_THAT(found(color + "scene.textures.s.type = scale\nscene.textures.s.texture1 = c\n"
+                            "scene.textures.s.texture2 = 2\nscene.materials.a.kd = s\n"),
+              ElementsAre(EndsWith("found a texture that goes up to 2: it gives back more light "
+                                   "than it gets")));
+}
+
+TEST(SdlPhysical, ThePixelsOfAMatteReachNoPrunedTexture) {
+  // The material's own textures have other numbers than in the file.
+  EXPECT_EQ(found_by_pixels("scene.textures.t.gain = 2\n"
+                            "scene.textures.other.type = hitpointcolor\n"
+                            "scene.materials.unused.kd = other\n"
+                            "scene.textures.u.type = scale\nscene.textures.u.texture1 = t\n"
+                            "scene.textures.u.texture2 = 2\nscene.materials.a.kd = u\n",
+                            0.5f)
+                .size(),
+            1);
+}
+
 TEST(SdlPhysical, AnEnvironmentSaysItOnce) {
   const ds::testing::SdlFolder folder;
   ::testing::internal::CaptureStderr();
@@ -112,6 +180,25 @@ TEST(SdlPhysical, AnEnvironmentSaysItOnce) {
   EXPECT_THAT(said,
               EndsWith("environment.scn:1: scene.materials.body.kd: wanted numbers in [0, 1], "
                        "found 3: it gives back more light than it gets\n"));
+}
+
+TEST(SdlWarnings, APropertyThatStandsTwiceIsSaidOnce) {
+  const ds::testing::SdlFolder folder;
+  ::testing::internal::CaptureStderr();
+  const Scene scene = folder.material("scene.materials.a.kd = 0.5\nscene.materials.a.kd = 0.25\n");
+  EXPECT_EQ(scene.materials[0].inputs[0].constant.x, 0.25f);
+  folder.write("environment.cfg",
+               "film.imagepipeline.0.type = NOP\n"
+               "film.imagepipeline.0.type = TONEMAP_LINEAR\n");
+  folder.environment(
+      "scene.lights.l.type = constantinfinite\nscene.lights.l.gain = 1 1 1\n\n"
+      "scene.lights.l.gain = 2 2 2\n");
+  const std::string said = ::testing::internal::GetCapturedStderr();
+  EXPECT_THAT(said,
+              HasSubstr("m.scn:2: scene.materials.a.kd stands in line 1 already: the last one "
+                        "counts\n"));
+  EXPECT_THAT(said, HasSubstr("environment.scn:4: scene.lights.l.gain stands in line 2 already"));
+  EXPECT_THAT(said, HasSubstr("environment.cfg:2: film.imagepipeline.0.type stands in line 1"));
 }
 
 }  // namespace

@@ -387,6 +387,26 @@ TEST(Canonical, EnvironmentDoesNotDependOnTheOrderOfTheFile) {
     EXPECT_NE(environment_text(folder, body + square + lamp + sun + change), wanted) << change;
 }
 
+TEST(Canonical, ColoursOfAnObjectCountWhereItsMaterialReadsThem) {
+  const SdlFolder folder;
+  const auto text = [&](const char* color, const std::string& kd) {
+    folder.write("o.ply", fmt::format("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                                      "property float y\nproperty float z\nproperty uchar red\n"
+                                      "property uchar green\nproperty uchar blue\nelement face 1\n"
+                                      "property list uchar int vertex_index\nend_header\n"
+                                      "0 0 0 {0}\n1 0 0 {0}\n0 1 0 {0}\n3 0 1 2\n",
+                                      color));
+    return environment_text(folder,
+                            "scene.textures.t.type = hitpointcolor\n"
+                            "scene.materials.body.kd = " +
+                                kd +
+                                "\nscene.objects.o.ply = o.ply\n"
+                                "scene.objects.o.material = body\n");
+  };
+  EXPECT_EQ(text("9 9 9", "0.5"), text("9 9 8", "0.5"));
+  EXPECT_NE(text("9 9 9", "t"), text("9 9 8", "t"));
+}
+
 TEST(Canonical, TheToneMapIsNotInTheEnvironment) {
   const SdlFolder folder;
   const Scene before = folder.environment(k_matte_body);
