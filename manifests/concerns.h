@@ -18,6 +18,8 @@ namespace ds {
 ///   classes_empty    classes of the class files, and classes above them, that no image is of
 ///   assets_unphysical  material files and environments with a surface that gives back more light
 ///                    than it gets, or another value that no real surface has
+///   sizes_unlikely   images of lengths that hardly go together, as where one is in millimetres: the
+///                    camera inside the model, the lens wider than it, ...
 struct Concern {
   std::string name;
   std::uint64_t count = 0;            ///< 0: none

@@ -16,6 +16,7 @@ struct ConcernText {
   const char* name;
   const char* text;             ///< behind "2 of 8 "
   const char* allowed_by = "";  ///< what a recipe says where it is meant
+  bool said = false;            ///< finding by finding, when it was planned
 };
 constexpr ConcernText k_texts[] = {
     {"mask_empty", "images show nothing of their model, the mask is empty"},
@@ -28,7 +29,9 @@ constexpr ConcernText k_texts[] = {
     {"models_unlisted", "model files stand in no class file", "classes.unlisted = \"keep\""},
     {"classes_empty", "classes have no image", "classes.missing = \"ignore\""},
     {"splits_empty", "splits have no image"},
-    {"assets_unphysical", "materials and environments have values that no real surface has"},
+    {"assets_unphysical", "materials and environments have values that no real surface has", "",
+     true},
+    {"sizes_unlikely", "images are of lengths that hardly go together", "", true},
 };
 
 const ConcernText& text_of(const Concern& concern) {
@@ -78,7 +81,7 @@ std::size_t tell_concerns(const std::vector<Concern>& concerns, const Recipe& re
     } else if (strict) {
       ++errors;
       say(Stream::people, "dsbuild: error: {}{} (--strict)\n", to_text(concern), way_out(concern));
-    } else if (concern.name != "assets_unphysical") {  // said, value by value, where they were read
+    } else if (!text_of(concern).said) {
       warn(to_text(concern) + way_out(concern));
     }
   }

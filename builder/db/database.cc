@@ -42,11 +42,12 @@ void read_facts(const std::string& text, Product& product) {
   }
 }
 
-MendedDamage damage_column(const Statement& row, int column) {
+template <typename T>
+T json_column(const Statement& row, int column) {
   try {
-    return nlohmann::json::parse(row.text(column)).get<MendedDamage>();
+    return nlohmann::json::parse(row.text(column)).get<T>();
   } catch (const nlohmann::json::exception& error) {
-    throw DamagedDatabase(fmt::format("the database is damaged: damage: {}", error.what()));
+    throw DamagedDatabase(fmt::format("the database is damaged: {}", error.what()));
   }
 }
 
@@ -118,17 +119,40 @@ void Database::put_content(const std::filesystem::path& file, const FileStamp& s
 
 std::optional<KnownModel> Database::find_model(Hash128 content, int reader) {
   Statement row = connection_->prepare(
-      "SELECT geometry, damage FROM geometry WHERE content = ?1 AND reader = ?2");
+      "SELECT geometry, uvs, colors, damage, box FROM geometry WHERE content = ?1 AND reader = ?2");
   if (!row.bind(1, content.hex()).bind(2, std::int64_t{reader}).step()) return std::nullopt;
-  return KnownModel{hash_column(row, 0), damage_column(row, 1)};
+  const auto box = json_column<std::array<double, 6>>(row, 4);
+  return KnownModel{{hash_column(row, 0), hash_column(row, 1), hash_column(row, 2)},
+                    json_column<MendedDamage>(row, 3),
+                    {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}}};
 }
 
 void Database::put_model(Hash128 content, int reader, const KnownModel& model) {
-  connection_->prepare("INSERT OR REPLACE INTO geometry VALUES (?1, ?2, ?3, ?4)")
+  connection_->prepare("INSERT OR REPLACE INTO geometry VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)")
       .bind(1, content.hex())
       .bind(2, std::int64_t{reader})
-      .bind(3, model.geometry.hex())
+      .bind(3, model.hashes.shape.hex())
       .bind(4, nlohmann::json(model.damage).dump())
+      .bind(5, model.hashes.uvs.hex())
+      .bind(6, model.hashes.colors.hex())
+      .bind(7, nlohmann::json({model.box.least.x, model.box.least.y, model.box.least.z,
+                               model.box.most.x, model.box.most.y, model.box.most.z})
+                   .dump())
+      .run();
+}
+
+std::optional<std::array<float, 6>> Database::find_image_bounds(Hash128 image, int reader) {
+  Statement row =
+      connection_->prepare("SELECT bounds FROM image_bounds WHERE image = ?1 AND reader = ?2");
+  if (!row.bind(1, image.hex()).bind(2, std::int64_t{reader}).step()) return std::nullopt;
+  return json_column<std::array<float, 6>>(row, 0);
+}
+
+void Database::put_image_bounds(Hash128 image, int reader, const std::array<float, 6>& bounds) {
+  connection_->prepare("INSERT OR REPLACE INTO image_bounds VALUES (?1, ?2, ?3)")
+      .bind(1, image.hex())
+      .bind(2, std::int64_t{reader})
+      .bind(3, nlohmann::json(bounds).dump())
       .run();
 }
 

@@ -70,8 +70,9 @@ struct PlacedView {
 
 /// What is known of a model file's content.
 struct KnownModel {
-  Hash128 geometry;
+  MeshHashes hashes;
   MendedDamage damage;
+  Box box;  ///< of the file's coordinates
 
   bool operator==(const KnownModel&) const = default;
 };
@@ -126,6 +127,11 @@ class Database {
   /// x, y, z and radius of the ball around a normalised model, by the hash of its part of the key.
   std::optional<std::array<double, 4>> find_sphere(Hash128 model_part, int reader);
   void put_sphere(Hash128 model_part, int reader, const std::array<double, 4>& sphere);
+
+  /// The least and greatest red, green and blue of an image as a texture uses it, by the hash of its
+  /// content and use.
+  std::optional<std::array<float, 6>> find_image_bounds(Hash128 image, int reader);
+  void put_image_bounds(Hash128 image, int reader, const std::array<float, 6>& bounds);
 
   bool has_products();
   /// Keys of the pictures of which some samples had to be left out: few.

@@ -18,9 +18,17 @@ CREATE TABLE input_file (
 ) WITHOUT ROWID;
 CREATE TABLE geometry (
   content TEXT NOT NULL, reader INTEGER NOT NULL,
-  geometry TEXT NOT NULL,
+  geometry TEXT NOT NULL,     -- hash of places, normals and triangles
   damage TEXT NOT NULL,       -- mended, as JSON array of [name, count]
+  uvs TEXT NOT NULL, colors TEXT NOT NULL,   -- their hashes; all 0 where the mesh has none
+  box TEXT NOT NULL,          -- of the file's coordinates: JSON array of the least and greatest x y z
   PRIMARY KEY (content, reader)
+) WITHOUT ROWID;
+CREATE TABLE image_bounds (   -- of textures' pixels as they are used
+  image TEXT NOT NULL,        -- hash of the file's content and of how it is used
+  reader INTEGER NOT NULL,
+  bounds TEXT NOT NULL,       -- JSON array of the least and greatest red, green, blue
+  PRIMARY KEY (image, reader)
 ) WITHOUT ROWID;
 CREATE TABLE sphere (         -- around models as they are normalised
   model TEXT NOT NULL,        -- hash of the model's part of the key
@@ -79,19 +87,13 @@ CREATE INDEX product_rejected ON product (key)
   WHERE rejected_samples > 0 AND kind = 'image';
 CREATE INDEX product_capped ON product (key)
   WHERE instr(facts, '"capped":true') > 0 AND kind = 'image';
-PRAGMA user_version = 7;
+PRAGMA user_version = 8;
 )sql";
-static_assert(k_schema_version == 7, "the last line of k_tables states the version too");
+static_assert(k_schema_version == 8, "the last line of k_tables states the version too");
 
 /// From version 1 to 2.
 constexpr const char* k_add_facts = R"sql(
 ALTER TABLE product ADD COLUMN facts TEXT NOT NULL DEFAULT '';
-)sql";
-
-/// From version 2 to 3.
-constexpr const char* k_add_damage = R"sql(
-DELETE FROM geometry;
-ALTER TABLE geometry ADD COLUMN damage TEXT NOT NULL DEFAULT '[]';
 )sql";
 
 /// From version 3 to 4.
@@ -119,7 +121,21 @@ CREATE INDEX IF NOT EXISTS product_rejected ON product (key)
 constexpr const char* k_add_capped = R"sql(
 CREATE INDEX IF NOT EXISTS product_capped ON product (key)
   WHERE instr(facts, '"capped":true') > 0 AND kind = 'image';
-PRAGMA user_version = 7;
+)sql";
+
+/// From version 7, and of any before it, to 8: what stood of models tells too little of them.
+constexpr const char* k_new_geometry = R"sql(
+DROP TABLE geometry;
+CREATE TABLE geometry (
+  content TEXT NOT NULL, reader INTEGER NOT NULL, geometry TEXT NOT NULL, damage TEXT NOT NULL,
+  uvs TEXT NOT NULL, colors TEXT NOT NULL, box TEXT NOT NULL,
+  PRIMARY KEY (content, reader)
+) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS image_bounds (
+  image TEXT NOT NULL, reader INTEGER NOT NULL, bounds TEXT NOT NULL,
+  PRIMARY KEY (image, reader)
+) WITHOUT ROWID;
+PRAGMA user_version = 8;
 )sql";
 
 std::int64_t user_version(Connection& connection) {
@@ -146,11 +162,11 @@ void prepare_schema(Connection& connection, const std::string& name) {
          name, k_schema_version, version);
   if (version > 0) {
     if (version < 2) connection.execute(k_add_facts);
-    if (version < 3) connection.execute(k_add_damage);
     if (version < 4) connection.execute(k_add_ctime);
     if (version < 5) connection.execute(k_add_sphere);
     if (version < 6) connection.execute(k_add_rejected);
-    connection.execute(k_add_capped);
+    if (version < 7) connection.execute(k_add_capped);
+    connection.execute(k_new_geometry);
     transaction.commit();
     return;
   }

@@ -84,14 +84,15 @@ PixelCounts count_file(const std::filesystem::path& file, const std::string& kin
 
 }  // namespace
 
-std::vector<Concern> dataset_concerns(const Recipe& recipe, const Concern& unphysical,
+std::vector<Concern> dataset_concerns(const Recipe& recipe, const std::vector<Concern>& planned,
                                       const std::vector<ImageRecord>& images) {
   std::vector<Concern> concerns = no_concerns();
   for (const ImageRecord& image : images)
     look_at_image(concerns, image);
   look_at_labels(concerns, recipe, images);
   look_at_splits(concerns, recipe, images);
-  concern(concerns, "assets_unphysical") = unphysical;
+  for (const Concern& one : planned)
+    concern(concerns, one.name.c_str()) = one;
   return concerns;
 }
 

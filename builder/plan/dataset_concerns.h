@@ -10,8 +10,9 @@
 
 namespace ds {
 
-/// Every kind of Concern, counted for the images that a manifest lists; `unphysical` is Plan::unphysical.
-std::vector<Concern> dataset_concerns(const Recipe& recipe, const Concern& unphysical,
+/// Every kind of Concern, counted for the images that a manifest lists; `planned` is
+/// Plan::concerns.
+std::vector<Concern> dataset_concerns(const Recipe& recipe, const std::vector<Concern>& planned,
                                       const std::vector<ImageRecord>& images);
 
 /// Counts the pixels of an image's files, read from the dataset's folder, where the dsbuild that

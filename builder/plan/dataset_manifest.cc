@@ -100,7 +100,7 @@ DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
   add_licences("materials", recipe.materials);
   add_licences("environments", recipe.environments);
   record.licences = group_licences(texts);
-  record.concerns = dataset_concerns(recipe, plan.unphysical, images);
+  record.concerns = dataset_concerns(recipe, plan.concerns, images);
   return record;
 }
 

@@ -2,8 +2,11 @@
 #include "builder/plan/inputs.h"
 
 #include "builder/plan/keys.h"
+#include "tracer/base/canonical.h"
 #include "tracer/base/files.h"
 #include "tracer/base/hash_stream.h"
+#include "tracer/base/log.h"
+#include "tracer/render/images.h"
 #include "tracer/render/render.h"
 #include "tracer/scene/sdl.h"
 
@@ -52,7 +55,8 @@ KnownModel Inputs::look_at_model(const std::filesystem::path& file) {
   const bool new_model = !known;
   if (!known) {
     const Model model = read_model(file);
-    known = KnownModel{geometry_hash(model.mesh), damage_and_facts(model.report)};
+    known =
+        KnownModel{mesh_hashes(model.mesh), damage_and_facts(model.report), bounds_of(model.mesh)};
   }
   if (new_content || new_model)
     new_models_.push_back(
@@ -64,7 +68,8 @@ const Inputs::ModelFacts& Inputs::model(const std::filesystem::path& file) {
   return once(models_, file, [this](const auto& path) {
     const KnownModel known = look_at_model(path);
     ModelFacts facts;
-    facts.geometry = known.geometry;
+    facts.hashes = known.hashes;
+    facts.box = known.box;
     for (const auto& [name, count] : known.damage) {
       if (name == k_has_uvs)
         facts.has.uvs = true;
@@ -79,7 +84,7 @@ const Inputs::ModelFacts& Inputs::model(const std::filesystem::path& file) {
 
 Mesh Inputs::model_mesh(const std::filesystem::path& file, const NormaliseOptions& options) {
   const Model model = read_model(file);
-  if (geometry_hash(model.mesh) != model_geometry(file))
+  if (mesh_hashes(model.mesh) != model_hashes(file))
     fail(ErrorKind::asset, "{}: the model changed while the dataset was built", file.string());
   return normalise(model.mesh, options);
 }
@@ -87,23 +92,59 @@ Mesh Inputs::model_mesh(const std::filesystem::path& file, const NormaliseOption
 const Sphere& Inputs::model_sphere(const std::filesystem::path& file,
                                    const NormaliseOptions& options) {
   return once(spheres_, file, [&](const auto& path) {
-    const Hash128 part = hash_text(canonical_model(model_geometry(path), options));
+    const Hash128 part = hash_text(canonical_model(model_hashes(path), {}, options));
     if (const auto known = database_.find_sphere(part, k_host_render_version))
       return Sphere{{(*known)[0], (*known)[1], (*known)[2]}, (*known)[3]};
     return new_spheres_.emplace(part, bounding_sphere(model_mesh(path, options))).first->second;
   });
 }
 
+/// Nothing of an image that cannot be read: its error is that of the images that need it.
+std::optional<InputBounds> Inputs::image_bounds(const Image& image) {
+  CanonicalText use;
+  use.add("content", image.content.hex());
+  use.add("gamma", image.gamma);
+  use.add("gain", image.gain);
+  use.add("wrap", static_cast<int>(image.wrap));
+  use.add("channel", static_cast<int>(image.channel));
+  const Hash128 key = hash_text(use.text());
+  if (const auto known = database_.find_image_bounds(key, k_host_render_version)) {
+    const auto& [r0, g0, b0, r1, g1, b1] = *known;
+    return InputBounds{{r0, g0, b0}, {r1, g1, b1}};
+  }
+  try {
+    Image pixels = image;
+    load_image(pixels);
+    return new_bounds_.insert_or_assign(key, bounds_of_pixels(pixels)).first->second;
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+void Inputs::look_at_pixels(Scene& scene) {
+  const auto bounds = [this](const Image& image) { return image_bounds(image); };
+  for (const std::string& line : add_unphysical_of_pixels(scene, bounds))
+    warn(line);
+}
+
 const Scene& Inputs::material(const std::filesystem::path& file) {
-  return once(materials_, file, read_material);
+  return once(materials_, file, [this](const auto& path) {
+    Scene scene = read_material(path);
+    look_at_pixels(scene);
+    return scene;
+  });
 }
 
 const Scene& Inputs::environment(const std::filesystem::path& folder) {
-  return once(environments_, folder, read_environment);
+  return once(environments_, folder, [this](const auto& path) {
+    Scene scene = read_environment(path);
+    look_at_pixels(scene);
+    return scene;
+  });
 }
 
 void Inputs::remember() {
-  if (new_models_.empty() && new_spheres_.empty()) return;
+  if (new_models_.empty() && new_spheres_.empty() && new_bounds_.empty()) return;
   Transaction transaction(database_.connection());
   for (const NewModel& model : new_models_) {
     if (model.stamp) database_.put_content(model.file, *model.stamp, model.content);
@@ -112,7 +153,12 @@ void Inputs::remember() {
   for (const auto& [part, sphere] : new_spheres_)
     database_.put_sphere(part, k_host_render_version,
                          {sphere.centre.x, sphere.centre.y, sphere.centre.z, sphere.radius_m});
+  for (const auto& [key, bounds] : new_bounds_)
+    database_.put_image_bounds(
+        key, k_host_render_version,
+        {bounds.low.x, bounds.low.y, bounds.low.z, bounds.high.x, bounds.high.y, bounds.high.z});
   transaction.commit();
+  new_bounds_.clear();
   new_models_.clear();
   new_spheres_.clear();
 }

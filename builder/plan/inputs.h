@@ -6,6 +6,7 @@
 #include "tracer/base/error.h"
 #include "tracer/scene/mesh.h"
 #include "tracer/scene/scene.h"
+#include "tracer/scene/texture_bounds.h"
 
 #include <filesystem>
 #include <map>
@@ -15,11 +16,6 @@
 #include <vector>
 
 namespace ds {
-
-/// What a mesh has that textures may read.
-struct MeshHas {
-  bool uvs = false, colors = false;
-};
 
 /// Whether a file whose stamp is known is taken for the one that was read before.
 enum class Stamps {
@@ -37,17 +33,21 @@ class Inputs {
       : database_(database), stamps_(stamps) {}
   Stamps stamps() const { return stamps_; }
 
-  /// geometry_hash of the model as read, before normalisation. Throws what `read_model` throws.
-  Hash128 model_geometry(const std::filesystem::path& file) { return model(file).geometry; }
+  /// mesh_hashes of the model as read, before normalisation. Throws what `read_model` throws.
+  const MeshHashes& model_hashes(const std::filesystem::path& file) { return model(file).hashes; }
   /// What reading it mended; throws likewise.
   const MendedDamage& model_damage(const std::filesystem::path& file) { return model(file).damage; }
   /// The ball around the model as it is normalised. Reads it where the database does not know it.
   const Sphere& model_sphere(const std::filesystem::path& file, const NormaliseOptions& options);
-  /// What its mesh has beside places; throws likewise.
-  MeshHas model_has(const std::filesystem::path& file) { return model(file).has; }
-  /// Reads and normalises. Throws Error(asset) where the file is no longer the one `model_geometry`
+  /// What its file has beside places; throws likewise.
+  MeshExtras model_has(const std::filesystem::path& file) { return model(file).has; }
+  /// Of the file's coordinates; throws likewise.
+  const Box& model_box(const std::filesystem::path& file) { return model(file).box; }
+  /// Reads and normalises. Throws Error(asset) where the file is no longer the one `model_hashes`
   /// saw.
   Mesh model_mesh(const std::filesystem::path& file, const NormaliseOptions& options);
+  /// As read_material and read_environment give them; what pixels of their images tell is among
+  /// what their materials have of unphysical, and was warned of.
   const Scene& material(const std::filesystem::path& file);
   const Scene& environment(const std::filesystem::path& folder);
 
@@ -67,12 +67,15 @@ class Inputs {
   const T& once(Known<T>& known, const std::filesystem::path& path, const Reader& reader);
   /// What the database knows of a model, taken apart.
   struct ModelFacts {
-    Hash128 geometry;
+    MeshHashes hashes;
     MendedDamage damage;
-    MeshHas has;
+    MeshExtras has;
+    Box box;
   };
   const ModelFacts& model(const std::filesystem::path& file);
   KnownModel look_at_model(const std::filesystem::path& file);
+  std::optional<InputBounds> image_bounds(const Image& image);
+  void look_at_pixels(Scene& scene);
 
   struct NewModel {
     std::filesystem::path file;
@@ -87,7 +90,8 @@ class Inputs {
   Known<Scene> materials_, environments_;
   std::vector<NewModel> new_models_;
   Known<Sphere> spheres_;
-  std::map<Hash128, Sphere> new_spheres_;  ///< by the hash of the model part
+  std::map<Hash128, Sphere> new_spheres_;      ///< by the hash of the model part
+  std::map<Hash128, InputBounds> new_bounds_;  ///< by the hash of the image and its use
 };
 
 }  // namespace ds

@@ -7,6 +7,7 @@
 #include "tracer/device/program_text.h"
 #include "tracer/device/program_tokens.h"
 #include "tracer/render/engine_text.h"
+#include "tracer/scene/scene_reads.h"
 #include "tracer/scene/sdl.h"
 
 #include <fmt/format.h>
@@ -98,9 +99,12 @@ const ToneMap& tone_map_of(const Recipe& recipe, const Scene& environment) {
   return recipe.outputs.tone_map ? *recipe.outputs.tone_map : environment.tone_map;
 }
 
-std::string canonical_model(Hash128 geometry, const NormaliseOptions& options) {
+std::string canonical_model(const MeshHashes& mesh, MeshExtras reads,
+                            const NormaliseOptions& options) {
   CanonicalText text;
-  text.add("geometry", geometry.hex());
+  text.add("geometry", mesh.shape.hex());
+  if (reads.uvs && mesh.uvs != Hash128{}) text.add("uvs", mesh.uvs.hex());
+  if (reads.colors && mesh.colors != Hash128{}) text.add("colors", mesh.colors.hex());
   text.add("up", options.up == UpAxis::y ? "y" : "z");
   if (options.size_m != 0) text.add("size_m", options.size_m);
   if (options.place_on_ground) text.add("ground_z_m", options.ground_z_m);
@@ -148,7 +152,7 @@ TextForm form_of_parts(CanonicalText head) {
 std::string canonical_shape(const Scene& environment) {
   CanonicalText text;
   for (const Object& object : environment.objects) {
-    text.add("object.geometry", geometry_hash(object.mesh).hex());
+    text.add("object.geometry", geometry_hash(object.mesh, {}).hex());
     text.add("object.camera_invisible", object.camera_invisible);
   }
   return text.text();
@@ -208,6 +212,7 @@ struct Environment {
 struct Kind {
   Shared<std::filesystem::path> material, environment;  ///< keep the addresses that are its name
   Hash128 material_part;
+  MeshExtras reads;  ///< of a model, by the material
   const std::string* program = nullptr;
   EngineSettings settings;  ///< with seed 0
   TextForm engine;          ///< folded, "seed" to be filled
@@ -225,7 +230,7 @@ class KeyMaker::State {
   void add_texts(const ImageSpec& image);
 
  private:
-  Hash128 model_part(const ImageSpec& image);
+  Hash128 model_part(const ImageSpec& image, MeshExtras reads);
   Environment& environment_of(const ImageSpec& image);
   View& view_of(Environment& environment, const ImageSpec& image);
   Kind& kind_of(const ImageSpec& image);
@@ -238,7 +243,7 @@ class KeyMaker::State {
   std::vector<const char*> output_kinds_;  ///< of output files
   Hash128 geometry_program_;
   Shared<std::filesystem::path> model_;  ///< the last image's: a model's images follow each other
-  std::optional<Hash128> model_part_;
+  std::array<std::optional<Hash128>, 4> model_parts_;  ///< by what of the model is read
   std::unordered_map<const void*, Environment> environments_;
   std::map<std::tuple<const void*, const void*, bool>, Kind> kinds_;
   std::deque<std::pair<Features, std::string>> programs_;
@@ -263,14 +268,16 @@ KeyMaker::State::State(const Recipe& recipe, Inputs& inputs, TextSet& texts)
   files_ = TextForm(files.text(), output_kinds_);
 }
 
-Hash128 KeyMaker::State::model_part(const ImageSpec& image) {
-  if (!model_part_ || !model_.is_same(image.model_file)) {
-    model_part_.reset();
-    const Hash128 geometry = inputs_.model_geometry(image.model_file);
+Hash128 KeyMaker::State::model_part(const ImageSpec& image, MeshExtras reads) {
+  if (!model_.is_same(image.model_file)) {
+    model_parts_ = {};
     model_ = image.model_file;
-    model_part_ = hash_text(texts_.fold(canonical_model(geometry, recipe_.normalise)));
   }
-  return *model_part_;
+  std::optional<Hash128>& part = model_parts_[(reads.uvs ? 1U : 0U) + (reads.colors ? 2U : 0U)];
+  if (!part)
+    part = hash_text(texts_.fold(
+        canonical_model(inputs_.model_hashes(image.model_file), reads, recipe_.normalise)));
+  return *part;
 }
 
 Environment& KeyMaker::State::environment_of(const ImageSpec& image) {
@@ -330,7 +337,9 @@ Kind& KeyMaker::State::kind_of(const ImageSpec& image) {
   settings.seed = 0;
   kind.material = image.material_file;
   kind.environment = image.environment_folder;
-  kind.material_part = texts_.add(canonical_material(inputs_.material(image.material_file)));
+  const Scene& material = inputs_.material(image.material_file);
+  kind.material_part = texts_.add(canonical_material(material));
+  kind.reads = reads_of(material, static_cast<int>(material.materials.size()) - 1);
   const std::string& text = program(image);
   kind.engine = TextForm(texts_.fold(canonical_engine(settings, text)), {"seed"});
   kind.kept.reset();
@@ -362,7 +371,7 @@ ImageKeys KeyMaker::State::keys(const ImageSpec& image) {
   View& view = view_of(environment, image);
   Kind& kind = kind_of(image);
   ImageKeys keys;
-  keys.parts = {model_part(image),
+  keys.parts = {model_part(image, kind.reads),
                 kind.material_part,
                 environment.part,
                 view.part,
@@ -372,7 +381,7 @@ ImageKeys KeyMaker::State::keys(const ImageSpec& image) {
   const HexText model(parts[0]);
   keys.render = five_.hash(
       {model, HexText(parts[1]), HexText(parts[2]), HexText(parts[3]), HexText(parts[4])});
-  keys.geometry = view.geometry.hash({model});
+  keys.geometry = view.geometry.hash({HexText(model_part(image, {}))});
   add_outputs(keys, environment, image.id);
   return keys;
 }
@@ -389,9 +398,11 @@ Hash128 KeyMaker::State::kept_key(const ImageSpec& image, const ImageKeys& keys)
 
 /// The other texts were added when the first image of their kind was met.
 void KeyMaker::State::add_texts(const ImageSpec& image) {
-  texts_.add(canonical_model(inputs_.model_geometry(image.model_file), recipe_.normalise));
+  Kind& kind = kind_of(image);
+  texts_.add(
+      canonical_model(inputs_.model_hashes(image.model_file), kind.reads, recipe_.normalise));
   texts_.add(canonical_camera(image.camera));
-  texts_.add(kind_of(image).engine.fill({view_of_digits(fmt::format_int(image.engine.seed))}));
+  texts_.add(kind.engine.fill({view_of_digits(fmt::format_int(image.engine.seed))}));
 }
 
 KeyMaker::KeyMaker(const Recipe& recipe, Inputs& inputs, TextSet& texts)

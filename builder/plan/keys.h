@@ -23,8 +23,7 @@ struct OutputFile {
 ///   render    what is traced: hash of the five parts
 ///   kept      of a film under way: render less spp, error and max_spp
 ///   geometry  what mask and depth are traced from: model, normalisation, the environment's meshes,
-///   camera less its lens,
-///             size
+///             all less uvs and colours, camera less its lens, size
 ///   outputs   each file: render or geometry key, tone map, encoding
 struct ImageKeys {
   PartHashes parts;  ///< of folded texts; the sixth, "files", is not in `render`
@@ -63,8 +62,10 @@ Scene scene_without_model(Inputs& inputs, const ImageSpec& image);
 /// The tone map an image is developed with: the recipe's, else its environment's.
 const ToneMap& tone_map_of(const Recipe& recipe, const Scene& environment);
 
-/// Canonical text of the model part: geometry and the normalisation steps that are switched on.
-std::string canonical_model(Hash128 geometry, const NormaliseOptions& options);
+/// Canonical text of the model part: the mesh, with what its material reads of uvs and colours, and
+/// the normalisation steps that are switched on.
+std::string canonical_model(const MeshHashes& mesh, MeshExtras reads,
+                            const NormaliseOptions& options);
 
 /// Path of an output of an image: "images/human.ply/0.png".
 std::string output_path(const std::string& image_id, const std::string& kind);

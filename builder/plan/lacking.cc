@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/lacking.h"
 
-#include "tracer/scene/type_tables.h"
+#include "tracer/scene/scene_reads.h"
 
 #include <fmt/format.h>
 
@@ -15,18 +15,12 @@ namespace ds {
 namespace {
 
 struct Needs {
-  bool uvs = false, colors = false;
+  MeshExtras reads;
   std::set<std::string> seen;  ///< models
 };
 
 Needs needs_of(const Scene& material) {
-  Needs needs;
-  for (const Texture& texture : material.textures) {
-    const NodeType& type = texture_types()[static_cast<std::size_t>(texture.type)];
-    needs.uvs = needs.uvs || reads_uvs(type);
-    needs.colors = needs.colors || reads_colors(type);
-  }
-  return needs;
+  return {reads_of(material, static_cast<int>(material.materials.size()) - 1), {}};
 }
 
 }  // namespace
@@ -43,11 +37,11 @@ std::vector<Lacking> find_lacking(const Plan& plan, Inputs& inputs) {
           needs.emplace(spec.material_file->native(), needs_of(inputs.material(spec.material_file)))
               .first;
     Needs& need = known->second;
-    if (!(need.uvs || need.colors) || !need.seen.insert(spec.model_name).second) continue;
-    const MeshHas has = inputs.model_has(spec.model_file);
+    if (need.reads == MeshExtras{} || !need.seen.insert(spec.model_name).second) continue;
+    const MeshExtras has = inputs.model_has(spec.model_file);
     const std::string material = spec.material_file->filename().string();
-    if (need.uvs && !has.uvs) found[{material, "uv"}].push_back(spec.model_name);
-    if (need.colors && !has.colors) found[{material, "colours"}].push_back(spec.model_name);
+    if (need.reads.uvs && !has.uvs) found[{material, "uv"}].push_back(spec.model_name);
+    if (need.reads.colors && !has.colors) found[{material, "colours"}].push_back(spec.model_name);
   }
   std::vector<Lacking> lacking;
   for (auto& [what, models] : found)

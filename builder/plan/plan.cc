@@ -5,6 +5,8 @@
 #include "builder/plan/limits.h"
 #include "builder/plan/manifest_state.h"
 #include "builder/plan/placed_files.h"
+#include "builder/plan/unlikely_sizes.h"
+#include "tracer/base/log.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -254,7 +256,11 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
   plan.placed = planner.placed();
   plan.to_remove = plan.placed->left_over(plan.images, shard);
   plan.forgets = planner.forgets();
-  plan.unphysical = count_unphysical(plan.images, inputs);
+  std::vector<std::string> unlikely;
+  plan.concerns = {count_unphysical(plan.images, inputs),
+                   find_unlikely_sizes(dataset.recipe, plan.images, inputs, unlikely)};
+  for (const std::string& line : unlikely)
+    warn(line);
   snapshot.reset();
   plan.labels = labels_of(dataset.recipe, plan);
   plan.manifest = manifest_state(dataset, plan, *plan.placed);

@@ -90,7 +90,9 @@ struct Plan {
   std::shared_ptr<PlacedFiles> placed;        ///< as the plan found them; refers to the dataset
   std::int64_t data_version = 0;              ///< Database::data_version before anything was read
   std::map<std::string, MendedModel> mended;  ///< by model name, of all shards' images
-  Concern unphysical;  ///< of the materials and environments of all shards' images
+  /// Those of all shards' images that are known before any is made: assets_unphysical,
+  /// sizes_unlikely. Their findings were warned of when they were found.
+  std::vector<Concern> concerns;
 };
 
 /// `force`: every image of the shard is traced again. `inputs` must outlive what is executed of the

@@ -7,7 +7,8 @@ import zlib
 from harness import IMAGES, TinyCase, main
 
 NONE = {name: 0 for name in ("mask_empty", "mask_at_frame", "mask_small", "picture_black", "picture_white",
-                             "models_absent", "models_unlisted", "classes_empty", "splits_empty", "assets_unphysical")}
+                             "models_absent", "models_unlisted", "classes_empty", "splits_empty", "assets_unphysical",
+                             "sizes_unlikely")}
 
 
 def grey_png(path):
@@ -109,6 +110,42 @@ class ConcernsTest(TinyCase):
         self.assertIn(wanted, self.run_it("plan", self.recipe, "-o", self.out).err)
         _, err = self.concerns("--strict", code=1)
         self.assertIn("dsbuild: error: 1 of 4 materials and environments have values that no real surface has: red.mat", err)
+
+    def test_a_bright_image_with_a_gain(self):
+        def chunk(kind, data):
+            return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        png = (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 1, 1, 8, 2, 0, 0, 0)) +
+               chunk(b"IDAT", zlib.compress(b"\0\xff\x80\0")) + chunk(b"IEND", b""))
+        (self.tiny / "materials/t.png").write_bytes(png)
+        self.edit("materials/red.mat", "kd = 0.7 0.1 0.1",
+                  "kd = t\nscene.materials.red.kd = t\nscene.textures.t.type = imagemap\n"
+                  "scene.textures.t.file = t.png\nscene.textures.t.gain = 2\nscene.textures.t.colorspace = nop")
+        text = (self.tiny / "materials/red.mat").read_text().splitlines()
+        (self.tiny / "materials/red.mat").write_text("\n".join(text[4:] + text[:4]) + "\n")
+        twice = "materials/red.mat:8: scene.materials.red.kd stands in line 7 already: the last one counts"
+        bright = "red.mat:8: scene.materials.red.kd: wanted numbers in [0, 1], found a texture that goes up to 2 1.0"
+        for _ in range(2):  # the second time out of the database's memory
+            concerns, err = self.concerns()
+            self.assertEqual(concerns["assets_unphysical"], 1)
+            self.assertEqual((err.count(twice), err.count(bright)), (1, 1), err)
+        self.edit("materials/red.mat", "gain = 2", "gain = 1")
+        concerns, err = self.concerns()
+        self.assertEqual(concerns["assets_unphysical"], 0)
+        self.assertNotIn("goes up to", err)
+
+    def test_lengths_in_millimetres(self):
+        large = ["--set", "models.size_m=160"]
+        wanted = "the camera stands inside the model's bounding box: the model is 160 m long, the camera 0.4"
+        # Known before anything is traced.
+        self.assertIn(wanted, self.run_it("plan", self.recipe, "-o", self.out, *large).err)
+        concerns, err = self.concerns(*large)
+        self.assertEqual(concerns["sizes_unlikely"], IMAGES)
+        self.assertEqual(err.count("is models.size_m = 160 in millimetres? lengths are in metres"), 1)
+        self.assertIn(f"dsbuild: warning: {IMAGES} of {IMAGES} images (box.off/0, ", err)
+        described = json.loads((self.out / "manifest/dataset.json").read_text())["concerns"]["sizes_unlikely"]
+        self.assertEqual((described["count"], described["of"]), (IMAGES, IMAGES))
+        _, err = self.concerns(*large, "--strict", code=1)
+        self.assertIn("images are of lengths that hardly go together", err)
 
     def test_pictures_that_are_all_white(self):
         concerns, err = self.concerns("--set", "outputs.tone_map=linear", "--set", "outputs.tone_map_scale=1000")

@@ -29,6 +29,37 @@ class StaleTest(TinyCase):
         self.assert_counts(self.build(), built=IMAGES // 2, reused=IMAGES // 2)
         self.assertEqual(self.run_it("verify", self.out).code, 0)
 
+    def test_colours_count_where_a_material_reads_them(self):
+        model = self.tiny / "models/tetra.ply"
+        plain = model.read_text()
+        files = {}
+        for color in None, "255 0 0", "0 0 255":
+            if color:
+                lines = plain.replace("float z\n", "float z\nproperty uchar red\nproperty uchar green\n"
+                                                   "property uchar blue\n").splitlines()
+                at = lines.index("end_header") + 1
+                model.write_text("\n".join(lines[:at] + [f"{line} {color}" for line in lines[at:at + 4]] +
+                                           lines[at + 4:]) + "\n")
+            self.assert_counts(self.build(), failed=0, traced=0 if files else IMAGES)
+            found = self.contents(self.out / "images")
+            self.assertEqual(found, files or found)
+            files = found
+        # They change no bit of a picture: it is traced again with them, and without.
+        self.build("--force")
+        self.assertEqual(self.contents(self.out / "images"), files)
+        for material in "red", "green":
+            (self.tiny / f"materials/{material}.mat").write_text(
+                f"scene.textures.t.type = hitpointcolor\nscene.materials.{material}.kd = t\n")
+        self.assert_counts(self.build(), traced=IMAGES)
+        blue = self.contents(self.out / "images")
+        model.write_text(model.read_text().replace(" 0 0 255\n", " 255 0 0\n"))
+        self.assertEqual(self.run_it("status", self.out, "--json").json["stale"], IMAGES // 2)
+        why = self.run_it("explain", self.out, "tetra.ply/0").out
+        self.assertIn("colors: ", why)
+        self.assert_counts(self.build(), traced=IMAGES // 2)
+        changed = {path for path, data in self.contents(self.out / "images").items() if blue[path] != data}
+        self.assertEqual(changed, {f"tetra.ply/{view}.png" for view in range(4)})  # and no mask
+
     def test_an_output_changed_with_its_times_kept(self):
         self.build()
         files = self.contents()

@@ -61,6 +61,16 @@ TEST(Database, KeepsSpheresByModelAndReader) {
   EXPECT_FALSE(database.find_sphere(k_b, 1));
 }
 
+TEST(Database, KeepsBoundsOfImagesByReader) {
+  Database database{std::filesystem::path()};
+  const std::array<float, 6> bounds{0, 0.1F, 1e-30F, 0.3F, 1.0F / 3, 7e20F};
+  EXPECT_FALSE(database.find_image_bounds(k_a, 1));
+  database.put_image_bounds(k_a, 1, bounds);
+  EXPECT_EQ(database.find_image_bounds(k_a, 1), bounds);
+  EXPECT_FALSE(database.find_image_bounds(k_a, 2));
+  EXPECT_FALSE(database.find_image_bounds(k_b, 1));
+}
+
 TEST(Database, KnowsAFileByEveryPartOfItsStamp) {
   Database database({});
   const FileStamp stamp{10, 20, 25, 30};
@@ -75,7 +85,9 @@ TEST(Database, KnowsAFileByEveryPartOfItsStamp) {
 
 TEST(Database, KeepsModelsByTheVersionOfTheirReader) {
   Database database({});
-  const KnownModel whole{k_b, {}}, mended{k_b, {{"out_of_range", 2}, {"non_finite", 1}}};
+  const Box box{{-0.1, 1.0 / 3, -7e17}, {0, 1e-300, 5}};
+  const KnownModel whole{{k_b, {}, {}}, {}, box};
+  const KnownModel mended{{k_b, k_a, k_b}, {{"out_of_range", 2}, {"non_finite", 1}}, box};
   database.put_model(k_a, 1, whole);
   EXPECT_EQ(database.find_model(k_a, 1), whole);
   EXPECT_FALSE(database.find_model(k_a, 2));
@@ -170,7 +182,7 @@ TEST(Database, ForgetsModelsOfVersionTwoWhoseDamageIsNotKnown) {
   {
     Database database(file);
     database.put_product(product, {});
-    database.put_model(k_a, 1, {k_b, {}});
+    database.put_model(k_a, 1, {{k_b, {}, {}}, {}, {}});
   }
   Connection(file).execute(
       "ALTER TABLE geometry DROP COLUMN damage; "
@@ -179,7 +191,7 @@ TEST(Database, ForgetsModelsOfVersionTwoWhoseDamageIsNotKnown) {
   Database database(file);
   EXPECT_FALSE(database.find_model(k_a, 1));
   EXPECT_TRUE(database.find_product(k_a));
-  database.put_model(k_a, 1, {k_b, {{"non_finite", 1}}});
+  database.put_model(k_a, 1, {{k_b, {}, {}}, {{"non_finite", 1}}, {}});
   EXPECT_EQ(database.find_model(k_a, 1)->damage, (MendedDamage{{"non_finite", 1}}));
 }
 
@@ -200,6 +212,21 @@ TEST(Database, TrustsNoStampOfVersionThreeWhichHadNoCtime) {
   EXPECT_NE(database.placed_files("one").at("images/a/0.png").stamp, stamp);
   database.put_content("/a/file", stamp, k_b);
   EXPECT_EQ(database.find_content("/a/file", stamp), k_b);
+}
+
+TEST(Database, ForgetsModelsOfVersionSevenWhoseExtrasAreNotKnown) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "db.sqlite";
+  const KnownModel model{{k_b, k_a, {}}, {}, {}};
+  { Database(file).put_model(k_a, 1, model); }
+  Connection(file).execute(
+      "ALTER TABLE geometry DROP COLUMN uvs; ALTER TABLE geometry DROP COLUMN colors; "
+      "ALTER TABLE geometry DROP COLUMN box; DROP TABLE image_bounds; PRAGMA user_version = 7");
+  Database database(file);
+  EXPECT_FALSE(database.find_model(k_a, 1));
+  database.put_model(k_a, 1, model);
+  EXPECT_EQ(database.find_model(k_a, 1), model);
+  EXPECT_FALSE(database.find_image_bounds(k_a, 1));
 }
 
 TEST(Database, TakesFactsThatAreNoneForDamage) {

@@ -26,7 +26,7 @@ ImageRecord image(const std::string& id, const PixelCounts& counts) {
   return record;
 }
 
-const Concern k_physical{"assets_unphysical", 0, 3, {}};
+const std::vector<Concern> k_physical{{"assets_unphysical", 0, 3, {}}};
 
 using Counts = std::map<std::string, std::uint64_t>;
 

@@ -2,6 +2,7 @@
 #include "builder/plan/keys.h"
 
 #include "tracer/base/canonical.h"
+#include "tracer/base/files.h"
 #include "tracer/device/program_text.h"
 #include "tracer/device/program_tokens.h"
 #include "tracer/render/engine_text.h"
@@ -156,8 +157,8 @@ ImageKeys keys_of_whole_texts(const Recipe& recipe, Inputs& inputs, const ImageS
   const std::string program = program_tokens(path_program_text(features_of(scene, image.camera)));
   TextSet texts;
   ImageKeys keys;
-  keys.parts[0] =
-      texts.add(canonical_model(inputs.model_geometry(image.model_file), recipe.normalise));
+  keys.parts[0] = texts.add(
+      canonical_model(inputs.model_hashes(image.model_file), MeshExtras{}, recipe.normalise));
   keys.parts[1] = texts.add(canonical_material(inputs.material(image.material_file)));
   keys.parts[2] = texts.add(canonical_environment(inputs.environment(image.environment_folder)));
   keys.parts[3] = texts.add(canonical_camera(image.camera));
@@ -221,6 +222,70 @@ TEST_F(KeysTest, AnUnusedStepOfTheNormalisationMovesNothing) {
   EXPECT_EQ(moved(before, keys()), (Moved{false, false, false}));
 }
 
+/// The keys with the model's colours, or its uvs, in a material of that text, before they change
+/// and after.
+class KeysOfExtrasTest : public KeysTest {
+ protected:
+  Moved moved_by(const char* material, const char* before, const char* after) {
+    const fs::path model = folder_.path() / "m.ply", file = folder_.path() / "m.mat";
+    write_file_atomic(file, material);
+    write_file_atomic(folder_.path() / "t.png", "not read here");
+    image_.model_file = model;
+    image_.material_file = file;
+    write_file_atomic(model, std::string(k_head) + before);
+    const ImageKeys first = keys();
+    write_file_atomic(model, std::string(k_head) + after);
+    return moved(first, keys());
+  }
+
+  static constexpr const char* k_head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+      "property float u\nproperty float v\nelement face 1\n"
+      "property list uchar int vertex_index\nend_header\n";
+  static constexpr const char* k_plain =
+      "0 0 0 9 9 9 0 0\n1 0 0 9 9 9 1 0\n0 1 0 9 9 9 0 1\n3 0 1 2\n";
+  static constexpr const char* k_recoloured =
+      "0 0 0 9 9 8 0 0\n1 0 0 9 9 9 1 0\n0 1 0 9 9 9 0 1\n3 0 1 2\n";
+  static constexpr const char* k_remapped =
+      "0 0 0 9 9 9 0 0\n1 0 0 9 9 9 1 0\n0 1 0 9 9 9 0 2\n3 0 1 2\n";
+  static constexpr const char* k_reshaped =
+      "0 0 0 9 9 9 0 0\n1 0 0 9 9 9 1 0\n0 2 0 9 9 9 0 1\n3 0 1 2\n";
+  TemporaryFolder folder_;
+};
+
+TEST_F(KeysOfExtrasTest, ColoursCountWhereTheMaterialReadsThem) {
+  const std::string plain = "scene.materials.a.kd = 0.5\n";
+  EXPECT_EQ(moved_by(plain.c_str(), k_plain, k_recoloured), (Moved{false, false, false}));
+  EXPECT_EQ(moved_by(plain.c_str(), k_plain, k_reshaped), (Moved{true, true, true}));
+  for (const std::string type : {"hitpointcolor", "hitpointgrey", "hitpointalpha"}) {
+    const std::string texture = "scene.textures.t.type = " + type + "\n";
+    EXPECT_EQ(moved_by((texture + "scene.materials.a.kd = t\n").c_str(), k_plain, k_recoloured),
+              (Moved{true, false, true}))
+        << type;
+    // Below another texture, as a part of a mix, and as light.
+    for (const char* user : {"scene.textures.s.type = scale\nscene.textures.s.texture1 = t\n"
+                             "scene.materials.a.kd = s\n",
+                             "scene.materials.b.kd = t\nscene.materials.c.kd = 0.1\n"
+                             "scene.materials.a.type = mix\nscene.materials.a.material1 = b\n"
+                             "scene.materials.a.material2 = c\n",
+                             "scene.materials.a.emission = t\n"})
+      EXPECT_TRUE(moved_by((texture + user).c_str(), k_plain, k_recoloured).render) << type << user;
+    // A texture that is there and that no material uses.
+    EXPECT_FALSE(moved_by((texture + plain).c_str(), k_plain, k_recoloured).render) << type;
+  }
+}
+
+TEST_F(KeysOfExtrasTest, UvsCountWhereTheMaterialReadsThem) {
+  EXPECT_EQ(moved_by("scene.materials.a.kd = 0.5\n", k_plain, k_remapped),
+            (Moved{false, false, false}));
+  const char* material =
+      "scene.textures.t.type = imagemap\nscene.textures.t.file = t.png\n"
+      "scene.materials.a.kd = t\n";
+  EXPECT_EQ(moved_by(material, k_plain, k_remapped), (Moved{true, false, true}));
+  EXPECT_EQ(moved_by(material, k_plain, k_recoloured), (Moved{false, false, false}));
+}
+
 TEST_F(KeysTest, PathsOfOutputsFollowTheId) {
   recipe_.outputs.depth = true;
   const ImageKeys made = keys();
@@ -235,12 +300,12 @@ TEST_F(KeysTest, AFileThatCannotBeReadFailsTheSameWayEachTime) {
   Inputs inputs(database_);
   std::string first, second;
   try {
-    inputs.model_geometry(image_.model_file);
+    inputs.model_hashes(image_.model_file);
   } catch (const Error& error) {
     first = error.what();
   }
   try {
-    inputs.model_geometry(image_.model_file);
+    inputs.model_hashes(image_.model_file);
   } catch (const Error& error) {
     second = error.what();
   }
