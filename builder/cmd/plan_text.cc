@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/plan_text.h"
 
+#include "builder/cmd/groups.h"
 #include "tracer/base/error.h"
 #include "tracer/base/streams.h"
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 namespace ds {
@@ -82,43 +82,9 @@ namespace {
 /// The reasons with the image's own name taken out of the paths in them, so that images that are
 /// stale for one reason are found to be so.
 std::string common_reason(const PlannedImage& image) {
-  std::string text = fmt::format("{}: {}", step_of(image), fmt::join(image.reasons, "; "));
-  const std::string own = "images/" + image.spec.id;
-  for (std::size_t at = text.find(own); at != text.npos; at = text.find(own, at + 1))
-    text.replace(at, own.size(), "images/*");
-  return text;
+  return with_replaced(fmt::format("{}: {}", step_of(image), fmt::join(image.reasons, "; ")),
+                       "images/" + image.spec.id, "images/*");
 }
-
-/// What stands in one line: names of images or files, and what is to be said of them.
-class Groups {
- public:
-  void add(const std::string& key, const std::string& name, std::string alone) {
-    const auto [at, is_new] = index_.try_emplace(key, groups_.size());
-    if (is_new) groups_.push_back({key, {}, std::move(alone)});
-    groups_[at->second].names.push_back(name);
-  }
-  void print(Stream to, bool all_names) const {
-    for (const Group& group : groups_) {
-      if (group.names.size() == 1) {
-        say(to, "{}\n", group.alone);
-        continue;
-      }
-      say(to, "{} and {} more: {}\n", group.names.front(), group.names.size() - 1, group.key);
-      if (!all_names) continue;
-      for (const std::string& name : group.names)
-        say(to, "  {}\n", name);
-    }
-  }
-
- private:
-  struct Group {
-    std::string key;
-    std::vector<std::string> names;
-    std::string alone;  ///< the line where it is one name
-  };
-  std::map<std::string, std::size_t, std::less<>> index_;
-  std::vector<Group> groups_;  ///< in the order of their first names
-};
 
 }  // namespace
 

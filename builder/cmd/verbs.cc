@@ -26,7 +26,7 @@ const std::vector<Verb>& verbs() {
        run_explain},
       {"verify",
        "check every file of a dataset, or trace some images again",
-       {target, overrides, output_folder, store_folder, rerender, seed, device, json},
+       {target, overrides, output_folder, store_folder, rerender, seed, device, verbose, json},
        run_verify},
       {"accuracy",
        "measure what accuracy costs in time, and write a report",

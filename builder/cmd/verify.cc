@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/make/verify.h"
 
+#include "builder/cmd/groups.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/stop_signal.h"
 #include "builder/cmd/verbs.h"
@@ -69,9 +70,23 @@ void print_not_checked(const std::string& why) {
       why.substr(0, line_end), line_end == std::string::npos ? "" : " ...");
 }
 
-void print_findings(const VerifyResult& result) {
-  for (const Finding& finding : result.findings)
-    say(Stream::result, "{}: {}: {}\n", to_string(finding.kind), finding.path, finding.what);
+/// With a file's or an image's own name taken out of what is said of it: "images/a.ply/0.png" and
+/// "a.ply/0" are the names of one image.
+std::string cause_of(const Finding& finding) {
+  return with_replaced(finding.what, finding.path, "*");
+}
+
+void print_findings(const VerifyResult& result, bool all) {
+  Groups groups;
+  for (const Finding& finding : result.findings) {
+    const std::string kind = to_string(finding.kind);
+    const std::string line = fmt::format("{}: {}: {}", kind, finding.path, to_text(finding));
+    if (all)
+      say(Stream::result, "{}\n", line);
+    else
+      groups.add(cause_of(finding), kind + ": " + finding.path, line);
+  }
+  groups.print(Stream::result, false);
   say(Stream::result, "{} images, {} files: ", result.images, result.files);
   if (result.rerendered > 0) say(Stream::result, "{} images traced again: ", result.rerendered);
   if (result.findings.empty())
@@ -94,7 +109,7 @@ int run_verify(const Arguments& arguments) {
     nlohmann::json findings = nlohmann::json::array();
     for (const Finding& finding : result.findings)
       findings.push_back(
-          {{"kind", to_string(finding.kind)}, {"path", finding.path}, {"what", finding.what}});
+          {{"kind", to_string(finding.kind)}, {"path", finding.path}, {"what", to_text(finding)}});
     print_json(
         {{"images", result.images},
          {"files", result.files},
@@ -103,7 +118,7 @@ int run_verify(const Arguments& arguments) {
          {"not_checked", not_checked.empty() ? nlohmann::json() : nlohmann::json(not_checked)},
          {"findings", findings}});
   } else {
-    print_findings(result);
+    print_findings(result, arguments.verbose);
     if (!not_checked.empty()) print_not_checked(not_checked);
   }
   return result.findings.empty() ? 0 : 1;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/command_line.h"
+#include "builder/recipe/keys.h"
 #include "tracer/base/error.h"
 #include "tracer/base/nearest.h"
 
@@ -30,12 +31,29 @@ std::string verbs_with(const CLI::App& app, const std::string& name) {
   return fmt::format("; {} {} it", fmt::join(having, ", "), having.size() == 1 ? "has" : "have");
 }
 
+/// "engine.spp" of --spp, where the verb takes a recipe's keys and that is one's own name.
+std::string_view key_of_option(const CLI::App* verb, std::string name) {
+  if (verb == nullptr || verb->get_option_no_throw("--set") == nullptr) return "";
+  name.erase(0, name.find_first_not_of('-'));
+  std::replace(name.begin(), name.end(), '-', '_');
+  for (const KeySpec& key : recipe_keys()) {
+    const std::string_view own = key.name.substr(key.name.rfind('.') + 1);
+    const bool less_unit =
+        name.size() >= 3 && own.starts_with(name) && own.substr(name.size()).starts_with('_');
+    if (own == name || less_unit) return key.name;
+  }
+  return "";
+}
+
 [[noreturn]] void refuse_option(const CLI::App& app, const CLI::App* verb,
                                 const std::string& name) {
   const std::string elsewhere = verbs_with(app, name);
   if (verb == nullptr && !elsewhere.empty())
     fail(ErrorKind::usage, "{} stands before the verb: write dsbuild VERB {}", name, name);
   const std::string owner = verb == nullptr ? "dsbuild" : verb->get_name();
+  if (const std::string_view key = key_of_option(verb, name); !key.empty())
+    fail(ErrorKind::usage, "{} has no option {}: it is the recipe's {}; write --set {}=VALUE",
+         owner, name, key, key);
   if (!elsewhere.empty()) fail(ErrorKind::usage, "{} has no option {}{}", owner, name, elsewhere);
   std::vector<std::string> known;
   for (const CLI::App* one : {verb, &app})
@@ -151,6 +169,10 @@ class Walk {
         fail(ErrorKind::usage, "{}: wanted {}, found {} behind it", owner(),
              with_value(name, option), *value);
     }
+    // An empty variable of a shell, most likely, and not what is done without the option.
+    if (value->empty())
+      fail(ErrorKind::usage, "{}: wanted {}, found nothing in its quotes", owner(),
+           with_value(name, option));
     if (name == "--set") check_assignment(*value);
   }
 
@@ -169,6 +191,9 @@ class Walk {
     std::vector<std::string> known;
     for (const CLI::Option* option : verb_->get_options())
       if (option->get_positional()) known.push_back(option->get_name());
+    for (std::size_t i = 0; i < std::min(positionals_.size(), known.size()); ++i)
+      if (positionals_[i].empty())
+        fail(ErrorKind::usage, "{}: wanted {}, found nothing in its quotes", owner(), known[i]);
     if (positionals_.size() <= known.size()) return;
     const auto first_extra = positionals_.begin() + static_cast<std::ptrdiff_t>(known.size());
     fail(ErrorKind::usage, "{}: does not know what to do with {}; it takes {}; see dsbuild help {}",

@@ -22,14 +22,14 @@ void check_file(VerifyResult& result, const fs::path& folder, const FileRecord& 
   const fs::path file = folder / wanted.path;
   std::error_code error;
   if (!fs::is_regular_file(file, error)) {
-    result.findings.push_back({Finding::Kind::missing, wanted.path, "the file is missing"});
+    result.findings.push_back({Finding::Kind::missing, wanted.path, "the file is missing", ""});
     return;
   }
   FileHashes found;
   try {
     found = hash_file(file);
   } catch (const Error& error_of_one) {
-    result.findings.push_back({Finding::Kind::changed, wanted.path, error_of_one.what()});
+    result.findings.push_back({Finding::Kind::changed, wanted.path, error_of_one.what(), ""});
     return;
   }
   if (found.xxh128 == wanted.hashes.xxh128 && found.sha256 == wanted.hashes.sha256 &&
@@ -41,13 +41,12 @@ void check_file(VerifyResult& result, const fs::path& folder, const FileRecord& 
   try {
     if (pixel_hash(file) == wanted.pixels)
       result.findings.push_back(
-          {Finding::Kind::encoding, wanted.path, "the pixels are the same; " + bytes});
+          {Finding::Kind::encoding, wanted.path, "the pixels are the same", bytes});
     else
-      result.findings.push_back(
-          {Finding::Kind::changed, wanted.path, "the pixels differ; " + bytes});
+      result.findings.push_back({Finding::Kind::changed, wanted.path, "the pixels differ", bytes});
   } catch (const Error&) {
     result.findings.push_back(
-        {Finding::Kind::changed, wanted.path, "it is no readable image; " + bytes});
+        {Finding::Kind::changed, wanted.path, "it is no readable image", bytes});
   }
 }
 
@@ -55,11 +54,12 @@ void check_file(VerifyResult& result, const fs::path& folder, const FileRecord& 
 void check_checksums(VerifyResult& result, const fs::path& folder,
                      const std::map<std::string, Hash128>& listed) {
   const auto add = [&](const std::string& path, const std::string& what) {
-    result.findings.push_back({Finding::Kind::manifest, path, what});
+    result.findings.push_back({Finding::Kind::manifest, path, what, ""});
   };
+  const std::string sums_file = k_checksums;
   std::error_code error;
   if (!fs::is_regular_file(folder / k_checksums, error)) {
-    result.findings.push_back({Finding::Kind::missing, k_checksums, "the file is missing"});
+    result.findings.push_back({Finding::Kind::missing, k_checksums, "the file is missing", ""});
     return;
   }
   std::map<std::string, Hash128> sums;
@@ -75,18 +75,18 @@ void check_checksums(VerifyResult& result, const fs::path& folder,
   for (const auto& [path, hash] : listed) {
     const auto sum = sums.find(path);
     if (sum == sums.end())
-      add(k_checksums, "it does not list " + path);
+      add(path, sums_file + " does not list it");
     else if (sum->second != hash)
-      add(k_checksums, "it contradicts images.jsonl on " + path);
+      add(path, sums_file + " contradicts images.jsonl on it");
   }
   for (const auto& [path, hash] : sums) {
     if (listed.contains(path)) continue;
     if (!path.starts_with("manifest/"))
-      add(k_checksums, "it lists " + path + ", which images.jsonl does not");
+      add(path, sums_file + " lists it, and images.jsonl does not");
     else if (!fs::is_regular_file(folder / path, error))
-      result.findings.push_back({Finding::Kind::missing, path, "the file is missing"});
+      result.findings.push_back({Finding::Kind::missing, path, "the file is missing", ""});
     else if (content_hash(folder / path) != hash)
-      add(path, "it has another checksum than " + std::string(k_checksums) + " says");
+      add(path, "it has another checksum than " + sums_file + " says");
   }
 }
 
@@ -108,10 +108,10 @@ void find_extra(VerifyResult& result, const fs::path& folder,
   }
   if (error)
     result.findings.push_back(
-        {Finding::Kind::extra, ".", "its folders cannot be listed: " + error.message()});
+        {Finding::Kind::extra, ".", "its folders cannot be listed: " + error.message(), ""});
   std::sort(extra.begin(), extra.end());
   for (const std::string& path : extra)
-    result.findings.push_back({Finding::Kind::extra, path, "nothing lists it"});
+    result.findings.push_back({Finding::Kind::extra, path, "nothing lists it", ""});
 }
 
 /// The images to trace again: those of the least hashes, so that one seed chooses the same ones
@@ -163,10 +163,9 @@ void compare_rerendered(VerifyResult& result, Rerender& rerender, const ImageRec
     const bool same_pixels = pixel_hash(bytes, wanted.path) == wanted.pixels;
     result.findings.push_back(
         {Finding::Kind::rerender, wanted.path,
-         fmt::format("traced again, {}: wanted XXH3-128 {}, found {}",
-                     same_pixels ? "the pixels are the same but the file's bytes differ"
-                                 : "the pixels differ",
-                     wanted.hashes.xxh128.hex(), found.hex())});
+         same_pixels ? "traced again, the pixels are the same but the file's bytes differ"
+                     : "traced again, the pixels differ",
+         fmt::format("wanted XXH3-128 {}, found {}", wanted.hashes.xxh128.hex(), found.hex())});
   }
 }
 
@@ -197,6 +196,11 @@ const char* to_string(Finding::Kind kind) {
   assertion_failed("a Finding::Kind", __FILE__, __LINE__);
 }
 
+std::string to_text(const Finding& finding) {
+  return finding.detail.empty() ? finding.what
+                                : fmt::format("{}; {}", finding.what, finding.detail);
+}
+
 VerifyResult verify_files(const fs::path& folder) {
   VerifyResult result;
   std::map<std::string, Hash128> listed;
@@ -222,31 +226,32 @@ void verify_against_plan(VerifyResult& result, Dataset& dataset, const Plan& pla
     const auto record = records.find(id);
     if (record == records.end())
       result.findings.push_back(
-          {Finding::Kind::missing, id, "the recipe names it, the manifest does not"});
+          {Finding::Kind::missing, id, "the recipe names it, the manifest does not", ""});
     else if (image.error)
-      result.findings.push_back({Finding::Kind::manifest, id, image.error->what()});
+      result.findings.push_back({Finding::Kind::manifest, id, image.error->what(), ""});
     else if (record->second.render_key != image.keys.render ||
              record->second.files_key != image.keys.files)
       result.findings.push_back({Finding::Kind::manifest, id,
                                  image.stale()
                                      ? fmt::format("it is of an older recipe or older assets: {}",
                                                    fmt::join(image.reasons, "; "))
-                                     : "it is of an older recipe or older assets"});
+                                     : "it is of an older recipe or older assets",
+                                 ""});
   }
   for (const auto& [id, record] : records)
     if (!wanted.contains(id))
       result.findings.push_back(
-          {Finding::Kind::extra, id, "the manifest names it, the recipe does not"});
+          {Finding::Kind::extra, id, "the manifest names it, the recipe does not", ""});
   for (const auto& [path, placed] : dataset.database->placed_files(dataset.row.id)) {
     const fs::path file = dataset.folder / path;
     if (placed.kind == k_manifest_kind && stamp_of(file) && content_hash(file) != placed.object) {
       result.findings.push_back(
-          {Finding::Kind::manifest, path, "it is not the one the last build wrote"});
+          {Finding::Kind::manifest, path, "it is not the one the last build wrote", ""});
       return;
     }
   }
   for (const std::string& what : plan.manifest.behind)
-    result.findings.push_back({Finding::Kind::manifest, "manifest", "it is behind: " + what});
+    result.findings.push_back({Finding::Kind::manifest, "manifest", "it is behind: " + what, ""});
 }
 
 void verify_by_tracing(VerifyResult& result, Dataset& dataset, const Plan& plan, Inputs& inputs,

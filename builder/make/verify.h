@@ -24,9 +24,12 @@ struct Finding {
     rerender,  ///< tracing again gives something else
   };
   Kind kind;
-  std::string path;  ///< relative to the dataset's folder, or an image's id
-  std::string what;
+  std::string path;    ///< relative to the dataset's folder, or an image's id
+  std::string what;    ///< the same words for all findings of one cause
+  std::string detail;  ///< what is this one's own: hashes and sizes; may be empty
 };
+/// What, and its detail.
+std::string to_text(const Finding& finding);
 const char* to_string(Finding::Kind kind);
 
 struct VerifyResult {

@@ -35,7 +35,8 @@ std::vector<Vec3d> listed_positions(const Settings& settings) {
     for (const RecipeValue& point : *list->array())
       positions.push_back(point_of(point));
   }
-  if (positions.empty() &&
+  // Keys of another set say that this one was not meant.
+  if (positions.empty() && !settings.misfits("camera.set") &&
       (settings.find("camera.positions") != nullptr || !settings.given("camera.positions"))) {
     settings.complain("camera.positions", "must hold a position with camera.set = \"list\"");
   }

@@ -247,6 +247,19 @@ std::string name_from_file(const Settings& settings, const fs::path& file) {
   return stem;
 }
 
+/// What a file of another kind was most likely meant for; "" for any other ending.
+std::string_view kind_of_other_file(const fs::path& file) {
+  static constexpr std::pair<std::string_view, std::string_view> k_kinds[] = {
+      {".ply", "a model, which models.dir or models.files of a recipe names"},
+      {".off", "a model, which models.dir or models.files of a recipe names"},
+      {".mat", "a material, which materials.dir or materials.files of a recipe names"},
+      {".scn", "a scene, whose folder environments.dir or environments.files of a recipe names"},
+      {".cla", "a class file, which classes.train or classes.test of a recipe names"}};
+  for (const auto& [ending, kind] : k_kinds)
+    if (file.extension() == ending) return kind;
+  return "";
+}
+
 }  // namespace
 
 Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrides) {
@@ -258,6 +271,8 @@ Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrid
              ? fmt::format(", did you mean {}?", with_ending.string())
              : similar_name(file));
   }
+  if (const std::string_view kind = kind_of_other_file(file); !kind.empty())
+    fail(ErrorKind::recipe, "{}: must be a recipe (.toml), found {}", file.string(), kind);
   Diagnostics diagnostics(ErrorKind::recipe);
   RecipeValue::Table tree = parse_recipe_text(read_text_file(file), file.string(), diagnostics);
   const bool parsed = diagnostics.empty();

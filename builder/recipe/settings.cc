@@ -213,6 +213,7 @@ void Settings::check_effects() {
       complain(value->second, key.name,
                fmt::format("has no effect with {} = {}, only with {}", chooser, literal(chooser),
                            key.only_with));
+      misfits_.emplace(chooser);
     }
     idle.push_back(key.name);
   }

@@ -33,6 +33,8 @@ class Settings {
   const RecipeValue* find(std::string_view key) const;
   /// Whether a misspelt key was most likely meant for this one.
   bool misspelt(std::string_view key) const { return meant_.contains(key); }
+  /// Whether a key was found to have no effect with the value that this one has.
+  bool misfits(std::string_view key) const { return misfits_.contains(key); }
   /// As if the key were not given.
   void unset(std::string_view key);
   /// Whether the key's only_with holds, so that it has an effect.
@@ -74,6 +76,7 @@ class Settings {
   /// Keys that a misspelt one was most likely meant for: what is amiss for want of them is no
   /// finding of its own.
   std::set<std::string, std::less<>> meant_;
+  std::set<std::string, std::less<>> misfits_;
   std::map<std::string, RecipeValue, std::less<>> defaults_;
   Diagnostics& diagnostics_;
 };

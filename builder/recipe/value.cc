@@ -141,6 +141,15 @@ std::optional<std::string> unquoted_value(std::string_view line) {
   return std::nullopt;
 }
 
+/// What a word of another format is in TOML; "" for any other word.
+std::string_view boolean_meant(std::string_view word) {
+  const auto is_one_of = [word](std::initializer_list<std::string_view> words) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
+  if (is_one_of({"true", "yes", "on"})) return "true";
+  return is_one_of({"false", "no", "off"}) ? "false" : "";
+}
+
 std::string_view line_of(std::string_view text, std::size_t number) {
   for (; number > 1 && !text.empty(); --number)
     text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
@@ -156,8 +165,8 @@ std::string explained(const toml::parse_error& error, std::string_view text) {
   std::string lower = *value;
   for (char& c : lower)
     c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (lower == "true" || lower == "false")
-    return fmt::format("must be TOML: wanted {}, got {}", lower, *value);
+  if (const std::string_view meant = boolean_meant(lower); !meant.empty())
+    return fmt::format("must be TOML: wanted {}, got {}", meant, *value);
   return fmt::format("must be TOML: a string wants quotes: {}, got {}", to_toml(*value), *value);
 }
 

@@ -98,6 +98,20 @@ class UsageTest(TinyCase):
                 (["build", self.recipe, "--device"], "build: wanted --device NAME, found nothing behind it"),
                 (["build", "--store", "--json", self.recipe], "build: wanted --store DIR, found --json behind it"),
                 (["build", self.recipe, "-o"], "build: wanted -o DIR, found nothing behind it"),
+                (["build", self.recipe, "--spp", "8"],
+                 "build has no option --spp: it is the recipe's engine.spp; write --set engine.spp=VALUE"),
+                (["plan", self.recipe, "--fov=40"], "it is the recipe's camera.fov_deg; write --set camera.fov_deg=VALUE"),
+                (["models", self.recipe, "--lens-radius-m", "1"], "write --set camera.lens_radius_m=VALUE"),
+                (["status", self.recipe, "--seed", "1"], "status has no option --seed: it is the recipe's dataset.seed; "),
+                (["models", self.tiny / "models/box.off"],
+                 "box.off: must be a recipe (.toml), found a model, which models.dir or models.files of a recipe names"),
+                (["build", self.tiny / "materials/red.mat"], "found a material, which materials.dir or materials.files"),
+                (["plan", self.tiny / "environments/floor/environment.scn"], "found a scene, whose folder environments.dir"),
+                (["build", self.recipe, "--device", ""], "build: wanted --device NAME, found nothing in its quotes"),
+                (["build", self.recipe, "--device="], "build: wanted --device NAME, found nothing in its quotes"),
+                (["build", self.recipe, "-o", ""], "build: wanted -o DIR, found nothing in its quotes"),
+                (["-C", "", "build", self.recipe], "dsbuild: wanted -C DIR, found nothing in its quotes"),
+                (["build", ""], "build: wanted DATASET, found nothing in its quotes"),
                 (["build", self.recipe, "--json=yes"], "build --json: takes no value, got yes"),
                 (["build", self.recipe, "-o", "a", "-o", "b"], "build -o: wanted once, found again"),
                 (["build", self.recipe, "-o", "a", "--output=b"], "build --output: wanted once, found again"),
@@ -210,7 +224,7 @@ class UsageTest(TinyCase):
         whole = self.recipe.read_text()
         line = whole.splitlines().index('name = "tiny"') + 1
         for value, wanted in (("my", '"my"'), ("my data  # the data", '"my data"'), ("models/a", '"models/a"'),
-                              ("~/x", '"~/x"'), ("True", "true")):
+                              ("~/x", '"~/x"'), ("True", "true"), ("yes", "true"), ("OFF", "false")):
             self.recipe.write_text(whole.replace('name = "tiny"', f"name = {value}"))
             run = self.run_it("plan", self.recipe)
             self.assertEqual((run.code, run.err.count("dsbuild: error: ")), (2, 1), run)

@@ -38,6 +38,25 @@ class VerifyTest(TinyCase):
         self.assertIn("changed: images/box.off/1.png: the pixels differ", text.out)
         self.assertIn("encoding: images/box.off/3.png: the pixels are the same", text.out)
 
+    def test_findings_of_one_cause_share_a_line(self):
+        for view in range(4):
+            (self.out / f"images/box.off/{view}.png").unlink()
+            self.replace(self.out / f"images/tetra.ply/{view}.png", b"no picture")
+        run = self.run_it("verify", self.out)
+        self.assertIn("missing: images/box.off/0.png and 3 more: the file is missing\n", run.out)
+        self.assertIn("changed: images/tetra.ply/0.png and 3 more: it is no readable image\n", run.out)
+        self.assertEqual(len(run.out.splitlines()), 3, run)
+        self.assertIn(": 8 differences", run.out)
+        all_lines = self.run_it("verify", self.out, "-v").out
+        self.assertEqual(len(all_lines.splitlines()), 9, all_lines)
+        self.assertIn("changed: images/tetra.ply/2.png: it is no readable image; wanted ", all_lines)
+        # One for all images of another recipe, too.
+        self.edit("materials/red.mat", "kd = 0.7 0.1 0.1", "kd = 0.6 0.1 0.1")
+        self.build("--set", "outputs.mask=true")
+        self.edit("materials/red.mat", "kd = 0.6 0.1 0.1", "kd = 0.5 0.1 0.1")
+        run = self.run_it("verify", self.out)
+        self.assertRegex(run.out, r"manifest: box\.off/\d and 3 more: it is of an older recipe or older assets: ")
+
     def test_one_flipped_bit(self):
         for path in sorted(self.out.rglob("*.png"))[:4]:
             data = bytearray(path.read_bytes())

@@ -135,6 +135,11 @@ TEST(RecipeKeys, NearMissesAreRecognised) {
   EXPECT_EQ(nearest_key("camera.fov"), "camera.fov_deg");
   EXPECT_EQ(nearest_key("engine.fov_deg"), "camera.fov_deg");
   EXPECT_EQ(nearest_key("modles.dir"), "models.dir");
+  // A key that there is, in another section, is nearer than one of this section that looks like it.
+  EXPECT_EQ(nearest_key("camera.normals"), "models.normals");
+  EXPECT_EQ(nearest_key("engine.mask"), "outputs.mask");
+  EXPECT_EQ(nearest_key("models.spp"), "engine.spp");
+  EXPECT_EQ(nearest_key("spp"), "engine.spp");
   EXPECT_EQ(nearest_key("camera.shutter"), "");
 }
 

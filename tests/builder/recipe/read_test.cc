@@ -189,6 +189,10 @@ TEST_F(RecipeReadTest, ReportsWrongShapes) {
 }
 
 TEST_F(RecipeReadTest, RefusesAKeyThatHasNoEffect) {
+  // Of another set than the one that is named: what that one lacks is no fault of its own.
+  EXPECT_EQ(folder_.findings("camera.set = \"list\"\ncamera.elevation_deg = 20"),
+            "r.toml:5:24: camera.elevation_deg has no effect with camera.set = \"list\", only with "
+            "camera.set = \"orbit\"");
   EXPECT_EQ(folder_.findings("camera.count = 8"),
             "r.toml:4:16: camera.count has no effect with camera.set = \"half-dodecahedron\", only "
             "with camera.set = "
