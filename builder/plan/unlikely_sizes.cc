@@ -108,7 +108,10 @@ std::string unit_of_model(const Recipe& recipe) {
 }
 
 std::string unit_of_distance(const Recipe& recipe, const Camera& camera) {
-  if (recipe.camera_fit) return "camera.distance_m = \"fit\" chose the distance";
+  if (recipe.camera_fit)
+    return "camera.distance_m = \"fit\" has both it and camera.target in the picture: "
+           "models.ground_z_m "
+           "and models.centre, which place it, are in metres";
   if (!setting(recipe, "camera.distance_m")) return "camera.positions are in metres";
   return unit_of("camera.distance_m", length(camera.position - camera.target));
 }
@@ -176,7 +179,10 @@ class Finder {
 
   void look(const ImageSpec& spec, Concern& all) {
     const ImageLengths image = lengths_of(spec);
-    const auto place = unlikely_place(image), lens = unlikely_lens(image);
+    const auto place = unlikely_place(image);
+    // Where the model is not what the camera is for, the lens does not fit it either.
+    const bool fits = !place || *place == UnlikelySize::model_large;
+    const auto lens = fits ? unlikely_lens(image) : std::nullopt;
     ++all.of;
     if (place || lens) add_example(all, spec.id);
     for (const auto& what : {place, lens})

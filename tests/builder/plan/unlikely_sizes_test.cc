@@ -125,6 +125,9 @@ TEST_F(UnlikelySizesTest, ALineForEachKindHasTheFiguresAndTheKey) {
               ElementsAre(HasSubstr("is camera.focus_distance_m = 400 in millimetres?")));
   EXPECT_THAT(lines_with({"models.ground_z_m=-57"}),
               ElementsAre(HasSubstr("nothing of the model is in front of the camera")));
+  // One cause is one line: the lens is right for a model of 0.16 m.
+  EXPECT_THAT(lines_with({"models.size_m=0.00016", "camera.lens_radius_m=0.002"}),
+              ElementsAre(HasSubstr("models.size_m = 0.00016 is in metres")));
 }
 
 TEST_F(UnlikelySizesTest, AFileInMillimetresThatKeepsItsSize) {
