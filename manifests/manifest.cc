@@ -3,12 +3,6 @@
 
 #include "manifests/film_facts.h"
 #include "manifests/json_text.h"
-#include "tracer/base/error.h"
-#include "tracer/base/files.h"
-
-#include <algorithm>
-#include <map>
-#include <string_view>
 
 namespace ds {
 namespace {
@@ -118,49 +112,6 @@ json to_json_value(const DatasetRecord& dataset) {
   return object;
 }
 
-/// One line a path in checksums.xxh128, and `xxhsum -c` reads no escapes.
-void check_path(const std::string& path) {
-  const std::filesystem::path parts(path);
-  const bool leaves =
-      std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part == ".."; });
-  const bool odd = std::any_of(path.begin(), path.end(), [](char c) {
-    return static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == '\\';
-  });
-  if (path.empty() || parts.is_absolute() || leaves || odd) {
-    fail(ErrorKind::asset,
-         "a dataset's path must be relative, stay in its folder and hold no control character or "
-         "backslash, got {:?}",
-         path);
-  }
-}
-
-/// path -> hash of every file of every image.
-std::map<std::string, Hash128> checksums_of(const std::vector<ImageRecord>& images) {
-  std::map<std::string, Hash128> checksums;
-  for (const ImageRecord& image : images) {
-    for (const FileRecord& file : image.files) {
-      check_path(file.path);
-      if (!checksums.emplace(file.path, file.hashes.xxh128).second) {
-        fail(ErrorKind::asset, "image {}: the file {} belongs to another image too", image.id,
-             file.path);
-      }
-    }
-  }
-  return checksums;
-}
-
-std::string images_text(const std::vector<ImageRecord>& images) {
-  std::map<std::string_view, const ImageRecord*> by_id;
-  for (const ImageRecord& image : images) {
-    if (!by_id.emplace(image.id, &image).second)
-      fail(ErrorKind::asset, "image {} stands twice", image.id);
-  }
-  std::string text;
-  for (const auto& [id, image] : by_id)
-    text += to_json_line(*image) + '\n';
-  return text;
-}
-
 }  // namespace
 
 std::string to_json_line(const ImageRecord& image) {
@@ -169,23 +120,6 @@ std::string to_json_line(const ImageRecord& image) {
 
 std::string to_json(const DatasetRecord& dataset) {
   return canonical_json(to_json_value(dataset), 2);
-}
-
-void write_manifest(const std::filesystem::path& folder, const DatasetRecord& dataset,
-                    const std::vector<ImageRecord>& images) {
-  auto checksums = checksums_of(images);
-  const std::string lines = images_text(images);
-  const std::string description = to_json(dataset);
-  const auto write = [&](const std::string& path, const std::string& text) {
-    write_file_atomic(folder / path, text);
-    checksums[path] = hash_text(text);
-  };
-  write("manifest/images.jsonl", lines);
-  write("manifest/dataset.json", description);
-  std::string text;
-  for (const auto& [path, hash] : checksums)
-    text += hash.hex() + "  " + path + '\n';
-  write_file_atomic(folder / "manifest/checksums.xxh128", text);
 }
 
 }  // namespace ds

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/make/execute.h"
 
-#include "builder/make/older_records.h"
-#include "builder/plan/dataset_concerns.h"
+#include "builder/make/manifest_lines.h"
 #include "builder/plan/dataset_manifest.h"
 #include "builder/plan/manifest_state.h"
 #include "builder/plan/placed_files.h"
@@ -15,10 +14,12 @@
 #include <deque>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <thread>
 #include <tuple>
 #include <unistd.h>
+#include <unordered_set>
 #include <vector>
 
 namespace ds {
@@ -43,17 +44,6 @@ std::vector<const ImageSpec*> one_of_each_kind(const std::deque<const PlannedIma
       first.push_back(&spec);
   }
   return first;
-}
-
-/// Whether a line taken over from the manifest before is one that the next build may leave out
-/// though nothing changed: of an image, or with a file, that the recipe does not have.
-bool is_left_over(const ImageRecord& record, const std::set<std::string_view>& planned,
-                  const OutputSettings& outputs) {
-  if (!planned.contains(record.id)) return true;
-  const std::vector<std::string> wanted = output_paths(outputs, record.id);
-  return std::any_of(record.files.begin(), record.files.end(), [&](const FileRecord& file) {
-    return std::find(wanted.begin(), wanted.end(), file.path) == wanted.end();
-  });
 }
 
 class Execution {
@@ -106,6 +96,7 @@ class Execution {
   const std::atomic<bool>& stop_;
   ImageMaker maker_;
   BuildResult result_;
+  std::unordered_set<const PlannedImage*> made_;              ///< by this build
   std::map<std::string, std::vector<std::string>> failures_;  ///< image ids by what went wrong
   bool disk_failed_ = false;
   std::string no_device_;  ///< why nothing can be traced
@@ -176,6 +167,7 @@ bool Execution::make_one(const PlannedImage& image) {
         image, options_.force,
         [&](const TraceProgress& progress) { observer_.progress(image, progress); }, stop_);
     ++result_.built;
+    made_.insert(&image);
     result_.traced += work.traced ? 1U : 0U;
     result_.developed += work.developed ? 1U : 0U;
     result_.traced_samples += work.samples;
@@ -274,7 +266,7 @@ bool Execution::is_in_place(PlacedFiles& placed, const PlannedImage& image) {
 /// which changes their stamps.
 bool Execution::is_as_planned() const {
   return result_.built == 0 && !options_.copy && plan_.to_remove.empty() && !plan_.forgets &&
-         plan_.manifest.current() && plan_.data_version == dataset_.database->data_version() &&
+         plan_.data_version == dataset_.database->data_version() &&
          std::none_of(plan_.images.begin(), plan_.images.end(),
                       [](const PlannedImage& image) { return image.stale() || image.record; });
 }
@@ -317,7 +309,7 @@ bool Execution::take_standing_manifest(const ListedImages& images, const Manifes
 }
 
 void Execution::finish() {
-  if (is_as_planned()) {
+  if (is_as_planned() && plan_.manifest.current()) {
     const ListedImages images = look_at_images(*plan_.placed, true);
     auto sources = sources_as_planned(plan_);
     if (!sources) sources = manifest_sources(plan_, images, *plan_.placed);
@@ -328,35 +320,23 @@ void Execution::finish() {
   // Of builds that end at once, the last to write must have seen what all of them placed.
   const Claims::Claim claim = dataset_.claims->own_datasets();
   if (!cut_short()) remove_left_over();
-  PlacedFiles placed(dataset_);
-  const ListedImages images = look_at_images(placed, false);
-  ManifestSources sources = manifest_sources(plan_, images, placed);
+  const bool as_planned = is_as_planned();
+  std::optional<PlacedFiles> placed_now;
+  PlacedFiles& placed = as_planned ? *plan_.placed : placed_now.emplace(dataset_);
+  const ListedImages images = look_at_images(placed, as_planned);
+  const ManifestSources sources = manifest_sources(plan_, images, placed);
   if (!take_standing_manifest(images, sources, placed)) write_manifest(images, sources, placed);
 }
 
 void Execution::write_manifest(const ListedImages& images, ManifestSources sources,
                                PlacedFiles& placed) {
-  std::vector<ImageRecord> records;
-  for (const PlannedImage* image : images.made) {
-    ImageRecord& record = records.emplace_back(image_record(*image, *dataset_.database));
-    count_older_pixels(record, *image, dataset_.folder, *dataset_.database);
-  }
+  const auto is_new = [this](const PlannedImage& image) { return made_.contains(&image); };
+  const WrittenManifest written =
+      ds::write_manifest(dataset_, plan_, placed,
+                         {images, is_new, cut_short(), lines_hold(dataset_, sources, placed)});
+  result_.concerns = written.concerns;
   find_capped(images);
-  const std::size_t made = records.size();
-  add_older_records(records, dataset_, images.lacking, cut_short(), placed);
-  DatasetRecord record = dataset_record(dataset_.recipe, plan_, records);
-  if (records.size() > made)
-    record.counts.emplace_back("of_an_earlier_build", records.size() - made);
-  result_.concerns = record.concerns;
-  ds::write_manifest(dataset_.folder, record, records);
-  std::set<std::string_view> planned;
-  for (const PlannedImage* image : images.lacking)
-    planned.insert(image->spec.id);
-  if (std::any_of(records.begin() + static_cast<std::ptrdiff_t>(made), records.end(),
-                  [&](const ImageRecord& older) {
-                    return is_left_over(older, planned, dataset_.recipe.outputs);
-                  }))
-    sources.listing = {};  // so that it does not stand
+  if (written.left_over) sources.listing = {};  // so that it does not stand
   remember_manifest(dataset_, sources);
 }
 

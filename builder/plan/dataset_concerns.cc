@@ -13,17 +13,16 @@ namespace ds {
 namespace {
 
 /// Counts the image among those looked at, and among those concerned where it is one.
-void look(std::vector<Concern>& concerns, const char* name, const ImageRecord& image,
+void look(std::vector<Concern>& concerns, const char* name, const ImageFacts& image,
           bool is_concerned) {
   Concern& one = concern(concerns, name);
   ++one.of;
-  if (is_concerned) add_example(one, image.id);
+  if (is_concerned) add_example(one, std::string(image.id));
 }
 
-void look_at_image(std::vector<Concern>& concerns, const ImageRecord& image) {
-  const std::uint64_t pixels =
-      static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
-  const PixelCounts& counts = image.pixel_counts;
+void look_at_image(std::vector<Concern>& concerns, const ImageFacts& image) {
+  const std::uint64_t pixels = image.pixels;
+  const PixelCounts& counts = image.counts;
   if (counts.model) {
     look(concerns, "mask_empty", image, *counts.model == 0);
     look(concerns, "mask_at_frame", image, counts.frame.value_or(0) > 0);
@@ -38,7 +37,7 @@ void look_at_image(std::vector<Concern>& concerns, const ImageRecord& image) {
 
 /// Of the class files, which the recipe has read.
 void look_at_labels(std::vector<Concern>& concerns, const Recipe& recipe,
-                    const std::vector<ImageRecord>& images) {
+                    const std::vector<ImageFacts>& images) {
   Concern& absent = concern(concerns, "models_absent");
   absent = {absent.name, recipe.coverage.missing, recipe.coverage.listed,
             recipe.coverage.missing_examples};
@@ -47,7 +46,7 @@ void look_at_labels(std::vector<Concern>& concerns, const Recipe& recipe,
               recipe.coverage.unlisted_examples};
   // An image is of its class and of those above it.
   std::set<std::string, std::less<>> seen;
-  for (const ImageRecord& image : images) {
+  for (const ImageFacts& image : images) {
     std::string_view path = image.class_path;
     while (!path.empty() && seen.emplace(path).second)
       path = path.substr(0, path.rfind('/') == path.npos ? 0 : path.rfind('/'));
@@ -59,7 +58,7 @@ void look_at_labels(std::vector<Concern>& concerns, const Recipe& recipe,
 }
 
 void look_at_splits(std::vector<Concern>& concerns, const Recipe& recipe,
-                    const std::vector<ImageRecord>& images) {
+                    const std::vector<ImageFacts>& images) {
   const bool by_chance = recipe.split_test_fraction.has_value();
   Concern& empty = concern(concerns, "splits_empty");
   for (const auto& [split, wanted] : {std::pair{"train", by_chance || recipe.train_classes},
@@ -67,7 +66,7 @@ void look_at_splits(std::vector<Concern>& concerns, const Recipe& recipe,
     if (!wanted) continue;
     ++empty.of;
     if (std::none_of(images.begin(), images.end(),
-                     [&](const ImageRecord& image) { return image.split == split; }))
+                     [&](const ImageFacts& image) { return image.split == split; }))
       add_example(empty, split);
   }
 }
@@ -85,9 +84,9 @@ PixelCounts count_file(const std::filesystem::path& file, const std::string& kin
 }  // namespace
 
 std::vector<Concern> dataset_concerns(const Recipe& recipe, const std::vector<Concern>& planned,
-                                      const std::vector<ImageRecord>& images) {
+                                      const std::vector<ImageFacts>& images) {
   std::vector<Concern> concerns = no_concerns();
-  for (const ImageRecord& image : images)
+  for (const ImageFacts& image : images)
     look_at_image(concerns, image);
   look_at_labels(concerns, recipe, images);
   look_at_splits(concerns, recipe, images);

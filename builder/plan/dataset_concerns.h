@@ -5,15 +5,25 @@
 #include "manifests/concerns.h"
 #include "manifests/manifest.h"
 
+#include <cstdint>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 namespace ds {
 
+/// What of an image that a manifest lists is counted for the dataset as a whole. Views what others
+/// hold.
+struct ImageFacts {
+  std::string_view id, model, class_path, split;
+  std::uint64_t pixels = 0;  ///< width times height
+  PixelCounts counts{};
+};
+
 /// Every kind of Concern, counted for the images that a manifest lists; `planned` is
 /// Plan::concerns.
 std::vector<Concern> dataset_concerns(const Recipe& recipe, const std::vector<Concern>& planned,
-                                      const std::vector<ImageRecord>& images);
+                                      const std::vector<ImageFacts>& images);
 
 /// Counts the pixels of an image's files, read from the dataset's folder, where the dsbuild that
 /// made them did not, and keeps the counts in the database: once for each image. How many are

@@ -70,16 +70,16 @@ ImageRecord image_record(const PlannedImage& image, Database& database) {
 }
 
 DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
-                             const std::vector<ImageRecord>& images) {
+                             const std::vector<ImageFacts>& images) {
   DatasetRecord record;
   record.name = recipe.name;
   record.licence = recipe.licence;
   record.recipe_text = canonical_recipe(recipe);
   record.dsbuild_version = program_version();
   record.seed = recipe.seed;
-  std::set<std::string> models, classes;
-  std::map<std::string, std::uint64_t> splits;
-  for (const ImageRecord& image : images) {
+  std::set<std::string_view> models, classes;
+  std::map<std::string_view, std::uint64_t> splits;
+  for (const ImageFacts& image : images) {
     models.insert(image.model);
     if (!image.class_path.empty()) classes.insert(image.class_path);
     if (!image.split.empty()) ++splits[image.split];

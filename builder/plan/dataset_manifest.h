@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "builder/plan/dataset_concerns.h"
 #include "builder/plan/plan.h"
 #include "builder/store/disk.h"
 #include "manifests/manifest.h"
@@ -20,6 +21,6 @@ ImageRecord image_record(const PlannedImage& image, Database& database);
 
 /// What the manifest says of the dataset as a whole, for the images it lists.
 DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
-                             const std::vector<ImageRecord>& images);
+                             const std::vector<ImageFacts>& images);
 
 }  // namespace ds

@@ -62,7 +62,7 @@ Hash128 hash_of_labels(DatasetRecord record, const Plan& plan) {
   return hash.hash();
 }
 
-/// As add_older_records does: a file that cannot be read is not known to be what a line says.
+/// As where older lines are taken over: a file that cannot be read is not known to be what a line says.
 Hash128 bytes_in_place(const PlacedFiles& placed, const std::string& path) {
   try {
     return placed.bytes_in_place(path).value_or(Hash128{});
@@ -99,6 +99,11 @@ std::string why_not_as_written(const Dataset& dataset, const char* path,
   if (stamp != known->stamp && content_hash(file) != known->object)
     return fmt::format("{} was changed on the disk", path);
   return "";
+}
+
+bool written_from(const PlacedFiles& placed, const char* path, Hash128 source) {
+  const PlacedFiles::Row* known = placed.find(path);
+  return known != nullptr && known->product == source;
 }
 
 std::string change(const std::string& before, const std::string& after) {
@@ -280,16 +285,18 @@ Hash128 what_is_made(const Plan& plan) {
 
 bool manifest_stands(const Dataset& dataset, const ManifestSources& sources,
                      const PlacedFiles& placed) {
-  const auto written_from = [&](const char* path, Hash128 source) {
-    const PlacedFiles::Row* known = placed.find(path);
-    return known != nullptr && known->product == source;
-  };
-  return dataset.row.manifest == sources.listing && written_from(k_images_file, sources.listing) &&
-         written_from(k_dataset_file, sources.labels) &&
-         written_from(k_checksums_file, sources.program) &&
+  return dataset.row.manifest == sources.listing &&
+         written_from(placed, k_images_file, sources.listing) &&
+         written_from(placed, k_dataset_file, sources.labels) &&
+         written_from(placed, k_checksums_file, sources.program) &&
          std::all_of(k_manifest_files.begin(), k_manifest_files.end(), [&](const char* path) {
            return why_not_as_written(dataset, path, placed).empty();
          });
+}
+
+bool lines_hold(const Dataset& dataset, const ManifestSources& sources, const PlacedFiles& placed) {
+  return written_from(placed, k_checksums_file, sources.program) &&
+         why_not_as_written(dataset, k_images_file, placed).empty();
 }
 
 void remember_manifest(Dataset& dataset, const ManifestSources& sources) {

@@ -44,6 +44,10 @@ Hash128 what_is_made(const Plan& plan);
 bool manifest_stands(const Dataset& dataset, const ManifestSources& sources,
                      const PlacedFiles& placed);
 
+/// Whether images.jsonl stands as this version of dsbuild wrote it, so that a line of it whose image
+/// is as it was would be written again.
+bool lines_hold(const Dataset& dataset, const ManifestSources& sources, const PlacedFiles& placed);
+
 /// Enters the files just written.
 void remember_manifest(Dataset& dataset, const ManifestSources& sources);
 

@@ -100,12 +100,6 @@ std::optional<Hash128> PlacedFiles::bytes_in_place(const std::string& path) cons
   return content_hash(dataset_.folder / path);
 }
 
-bool PlacedFiles::in_place(const ImageRecord& record) const {
-  return std::all_of(record.files.begin(), record.files.end(), [&](const FileRecord& wanted) {
-    return bytes_in_place(wanted.path) == wanted.hashes.xxh128;
-  });
-}
-
 std::vector<std::string> PlacedFiles::left_over(const std::vector<PlannedImage>& images,
                                                 Shard shard) const {
   std::vector<bool> wanted(rows_.size());

@@ -5,7 +5,6 @@
 #include "builder/plan/hash_index.h"
 #include "builder/plan/plan.h"
 #include "builder/store/dataset.h"
-#include "manifests/manifest.h"
 
 #include <cstdint>
 #include <memory>
@@ -46,8 +45,6 @@ class PlacedFiles {
   /// Hash of the bytes of the file that is there now, whatever put them there; nothing where there
   /// is none. Reads it where its stamp is not the one remembered. Throws Error(io).
   std::optional<Hash128> bytes_in_place(const std::string& path) const;
-  /// Whether every file of a manifest's line is there with the bytes that it says.
-  bool in_place(const ImageRecord& record) const;
   /// What the database knew of a file; null where nothing.
   const Row* find(std::string_view path) const;
   /// The files of the shard's images that are of none of these images, or of one whose picture is

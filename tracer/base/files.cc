@@ -2,6 +2,7 @@
 #include "tracer/base/files.h"
 
 #include "tracer/base/disk_error.h"
+#include "tracer/base/file_writer.h"
 #include "tracer/base/hash.h"
 
 #include <atomic>
@@ -12,6 +13,8 @@
 #include <fstream>
 #include <iterator>
 #include <linux/fs.h>
+#include <memory>
+#include <optional>
 #include <random>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
@@ -146,6 +149,44 @@ void write_file_atomic(const fs::path& path, std::span<const std::byte> bytes) {
   file.sync();
   file.close();
   temporary.rename_to(target);
+}
+
+/// Opened at the first write that the buffer has no room for.
+struct FileWriter::State {
+  static constexpr std::size_t k_buffer = 1U << 16U;
+
+  fs::path path, target;
+  std::optional<TemporaryName> temporary;
+  std::optional<Descriptor> file;
+  std::string buffer;
+
+  void flush() {
+    if (!file) {
+      target = prepare_target(path);
+      temporary.emplace(target);
+      file.emplace(temporary->path(), k_write_new);
+    }
+    write_all(*file, target, bytes_of(buffer));
+    buffer.clear();
+  }
+};
+
+FileWriter::FileWriter(const fs::path& path) : state_(std::make_unique<State>()) {
+  state_->path = path;
+}
+
+FileWriter::~FileWriter() = default;
+
+void FileWriter::write(std::string_view text) {
+  state_->buffer += text;
+  if (state_->buffer.size() >= State::k_buffer) state_->flush();
+}
+
+void FileWriter::commit() {
+  state_->flush();
+  state_->file->sync();
+  state_->file->close();
+  state_->temporary->rename_to(state_->target);
 }
 
 void write_file_atomic(const fs::path& path, std::string_view text) {

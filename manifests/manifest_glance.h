@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "manifests/manifest.h"
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace ds {
+
+/// What a line of images.jsonl says that tells whether it still holds: what can be seen without
+/// taking the line apart, which costs fifty times as much. Views into the line or the record.
+struct LineGlance {
+  struct File {
+    std::string_view path, kind;
+    Hash128 xxh128;
+  };
+  std::string_view id, model, class_path, split, material, environment;
+  std::vector<File> files;
+  std::uint64_t pixels = 0;  ///< width times height
+  PixelCounts pixel_counts;
+  Hash128 render_key, files_key;
+};
+
+/// Of a line that `to_json_line` wrote, without its line break. Nothing where a text in it is
+/// escaped, or where it is another line: `image_from_json_line` then tells.
+std::optional<LineGlance> glance_at(std::string_view line);
+LineGlance glance_at(const ImageRecord& image);
+
+}  // namespace ds

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// A glance at a line says what taking it apart says, or nothing.
+#include "manifests/manifest_glance.h"
+
+#include <gtest/gtest.h>
+
+namespace ds {
+namespace {
+
+void expect_same(const LineGlance& a, const LineGlance& b) {
+  EXPECT_EQ(a.id, b.id);
+  EXPECT_EQ(a.model, b.model);
+  EXPECT_EQ(a.class_path, b.class_path);
+  EXPECT_EQ(a.split, b.split);
+  EXPECT_EQ(a.material, b.material);
+  EXPECT_EQ(a.environment, b.environment);
+  EXPECT_EQ(a.pixels, b.pixels);
+  EXPECT_EQ(a.pixel_counts, b.pixel_counts);
+  EXPECT_EQ(a.render_key, b.render_key);
+  EXPECT_EQ(a.files_key, b.files_key);
+  ASSERT_EQ(a.files.size(), b.files.size());
+  for (std::size_t i = 0; i < a.files.size(); ++i) {
+    EXPECT_EQ(a.files[i].path, b.files[i].path);
+    EXPECT_EQ(a.files[i].kind, b.files[i].kind);
+    EXPECT_EQ(a.files[i].xxh128, b.files[i].xxh128);
+  }
+}
+
+ImageRecord record(const std::string& model) {
+  ImageRecord image;
+  image.id = model + "/3";
+  image.model = model;
+  image.class_path = "vessel/mug";
+  image.split = "test";
+  image.material = "red";
+  image.environment = "studio";
+  image.view = "3";
+  image.width = 300;
+  image.height = 20;
+  image.math = "strict";
+  for (const char* kind : {"image", "mask"})
+    image.files.push_back({"images/" + image.id + "." + kind,
+                           kind,
+                           {hash_text(model + kind), std::string(64, 'a'), 12},
+                           hash_text("pixels")});
+  image.render_key = hash_text("render" + model);
+  image.files_key = hash_text("files" + model);
+  for (Hash128& part : image.parts)
+    part = hash_text("part");
+  image.pixel_counts = {17, {}, 4000, 0};
+  return image;
+}
+
+TEST(ManifestGlance, SeesWhatTheLineSays) {
+  for (const char* model : {"mug.ply", "m[1].off", "a]}{[.off", "],:.off", "\u00e9 id.ply"}) {
+    ImageRecord image = record(model);
+    const std::string line = to_json_line(image);
+    const auto glance = glance_at(line);
+    ASSERT_TRUE(glance) << model;
+    expect_same(*glance, glance_at(image));
+    image.files.clear();
+    image.pixel_counts = {};
+    image.class_path = image.split = "";
+    const std::string bare = to_json_line(image);
+    ASSERT_TRUE(glance_at(bare));
+    expect_same(*glance_at(bare), glance_at(image));
+  }
+}
+
+TEST(ManifestGlance, LeavesToAReaderWhatIsEscapedOrNoSuchLine) {
+  // Keys in a text are no keys.
+  for (const char* model : {"a\"id\":\"b.off", "\"],\"files_key\":\"x", "tab\t.off"}) {
+    ImageRecord image = record(model);
+    EXPECT_FALSE(glance_at(to_json_line(image))) << model;
+    image = record("mug.ply");
+    image.class_path = model;
+    EXPECT_FALSE(glance_at(to_json_line(image))) << model;
+  }
+  const std::string line = to_json_line(record("mug.ply"));
+  EXPECT_FALSE(glance_at(""));
+  EXPECT_FALSE(glance_at("{}"));
+  for (std::size_t size = 0; size + 9 < line.size(); size += 7)
+    EXPECT_FALSE(glance_at(std::string_view(line).substr(0, size))) << size;
+}
+
+}  // namespace
+}  // namespace ds
