@@ -16,6 +16,8 @@
 namespace ds {
 namespace {
 
+constexpr std::string_view k_digits = "0123456789abcdef";
+
 struct DigestDeleter {
   void operator()(EVP_MD_CTX* context) const { EVP_MD_CTX_free(context); }
 };
@@ -34,7 +36,8 @@ class Sha256 {
     check(EVP_DigestFinal_ex(context_.get(), digest.data(), &size) == 1);
     std::string hex;
     for (unsigned int i = 0; i < size; ++i)
-      hex += fmt::format("{:02x}", digest[i]);
+      for (const unsigned digit : {digest[i] / 16U, digest[i] % 16U})
+        hex += k_digits[digit];
     return hex;
   }
 
@@ -53,7 +56,6 @@ Hash128 from_xxh(XXH128_hash_t hash) {
 }
 
 // By tables: a plan of 25,000 images reads and writes half a million hashes as text.
-constexpr std::string_view k_digits = "0123456789abcdef";
 
 constexpr auto k_byte_digits = [] {
   std::array<std::array<char, 2>, 256> digits{};
