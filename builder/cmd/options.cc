@@ -140,7 +140,7 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
       return;
     case Option::shard:
       verb.add_option("--shard", to.shard,
-                      "make only share I of N of the images, chosen by a hash of their names; when "
+                      "only share I of N of the images, chosen by a hash of their names; when "
                       "all N shares are made the dataset is whole [1/1]")
           ->type_name("I/N");
       return;

@@ -24,6 +24,7 @@ nlohmann::json plan_json(const Plan& plan, const PlanCounts& counts) {
   object["stale_images"] = nlohmann::json::array();
   object["failed_images"] = nlohmann::json::array();
   for (const PlannedImage& image : plan.images) {
+    if (image.elsewhere) continue;
     if (image.error)
       object["failed_images"].push_back({{"id", image.spec.id}, {"why", image.error->what()}});
     if (image.stale())
@@ -158,6 +159,7 @@ void print_answer(const Answer& answer, const Calibration& calibration) {
 
 int run_plan(const Arguments& arguments) {
   const Wish wish = wish_of(arguments);
+  const Shard shard = read_shard(arguments.shard);
   RealDisk disk;
   Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
   if (wish.all_images() && !dataset.recipe.outputs.image)
@@ -165,7 +167,7 @@ int run_plan(const Arguments& arguments) {
          "{} is of pictures, and with outputs.image = false the recipe makes none; ask --time",
          wish.error ? "--error" : "--budget");
   Inputs inputs(*dataset.database, stamps_of(arguments));
-  const Plan plan = make_plan(dataset, inputs, wish.all_images());
+  const Plan plan = make_plan(dataset, inputs, wish.all_images(), shard);
   const PlanCounts counts = count(plan);
   nlohmann::json object = arguments.json ? plan_json(plan, counts) : nlohmann::json();
   if (!arguments.json) {

@@ -21,10 +21,11 @@ std::string why_never(const Dataset& dataset) {
 }  // namespace
 
 int run_status(const Arguments& arguments) {
+  const Shard shard = read_shard(arguments.shard);
   RealDisk disk;
   Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
   Inputs inputs(*dataset.database, stamps_of(arguments));
-  const Plan plan = make_plan(dataset, inputs, false);
+  const Plan plan = make_plan(dataset, inputs, false, shard);
   const PlanCounts counts = count(plan);
   const std::vector<BuildRow> builds = dataset.database->builds(dataset.row.id);
   const std::string store = dataset.store ? dataset.store->folder().string() : "";

@@ -253,6 +253,7 @@ std::vector<PairWork> work_of(const Plan& plan, const Recipe& recipe) {
   std::map<std::pair<std::string, std::string>, PairWork> pairs;
   std::map<std::pair<std::string, std::string>, std::set<SceneName>> scenes;
   for (const PlannedImage& image : plan.images) {
+    if (image.elsewhere) continue;
     const std::pair<std::string, std::string> name{*image.spec.environment_name,
                                                    *image.spec.material_name};
     PairWork& pair = pairs[name];

@@ -53,6 +53,18 @@ class ShardsTest(TinyCase):
         self.assert_counts(self.build(*VIEWS), images=IMAGES, built=0, reused=IMAGES)
         self.assertEqual(self.contents(), self.wanted)
 
+    def test_plan_and_status_are_of_the_shard(self):
+        self.shard(1)
+        for verb in ("plan", "status"):
+            runs = [self.run_it(verb, self.recipe, "-o", self.out, *VIEWS, "--shard", f"{number}/{SHARDS}", "--json").json
+                    for number in range(1, SHARDS + 1)]
+            self.assertEqual(runs[0]["stale"], 0, verb)
+            self.assertEqual(sum(run["images"] for run in runs), IMAGES)
+            whole = self.run_it(verb, self.recipe, "-o", self.out, *VIEWS, "--json").json
+            self.assertEqual(sum(run["stale"] for run in runs), whole["stale"])
+            self.assertEqual(sum(run["stale"] for run in runs), IMAGES - runs[0]["images"])
+        self.assertEqual(self.run_it("plan", self.recipe, "--shard", "5/4").code, 2)
+
     def test_in_turn(self):
         images = 0
         for number in (3, 1, 4, 2):
