@@ -63,6 +63,13 @@ const PlannedImage& find_image(const Plan& plan, const Dataset& dataset,
     for (const OutputFile& output : image.keys.outputs)
       if (output.path == wanted || folder / output.path == file) return image;
   }
+  const std::string inside = file.lexically_relative(folder).generic_string();
+  if (inside.starts_with("images/") && fs::is_regular_file(file, error)) {
+    const bool removed =
+        std::find(plan.to_remove.begin(), plan.to_remove.end(), inside) != plan.to_remove.end();
+    fail(ErrorKind::usage, "{}: no image of the recipe has this file{}", wanted,
+         removed ? " any more; the next build removes it" : ", and dsbuild did not make it");
+  }
   std::vector<std::string_view> ids;
   for (const PlannedImage& image : plan.images)
     ids.emplace_back(image.spec.id);

@@ -105,6 +105,19 @@ class StaleTest(TinyCase):
         run = self.run_it("explain", self.recipe, image, "-o", self.out, "--set", "engine.spp=4")
         self.assertRegex(run.out, r"  material: green -> \w+\n  engine: spp: 1 -> 4\nrender key ")
 
+    def test_a_file_that_no_image_has_is_said_to_be_so(self):
+        self.build()
+        (self.tiny / "models/tetra.ply").unlink()
+        picture = self.out / "images/tetra.ply/0.png"
+        own = self.out / "images/box.off/notes.txt"
+        own.write_text("mine")
+        for file, why in (picture, "any more; the next build removes it"), (own, "dsbuild did not make it"):
+            run = self.run_it("explain", file)
+            self.assertEqual(run.code, 2, run)
+            self.assertEqual(len(run.err.splitlines()), 1, run)
+            self.assertIn("no image of the recipe has this file", run.err)
+            self.assertIn(why, run.err)
+
     def test_labels_are_stale_without_any_picture(self):
         self.build("--set", "classes.split={test=1.0}")
         changed = ["--set", "classes.split={test=0.0}"]
