@@ -15,7 +15,9 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <set>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -73,8 +75,11 @@ void print_result(const BuildResult& result, const Dataset& dataset) {
     text += fmt::format("; {} traced on {}", format_samples(result.traced_samples), result.device);
   say(Stream::report, "{}\n", text);
   print_capped(result, dataset.recipe);
-  say(Stream::report, "pictures: {}\nmanifest: {}\n", (dataset.folder / "images").string(),
-      (dataset.folder / "manifest" / "images.jsonl").string());
+  // Where nothing could be made they are not there.
+  std::error_code error;
+  for (const auto& [name, path] : {std::pair{"pictures", dataset.folder / "images"},
+                                   std::pair{"manifest", dataset.folder / "manifest/images.jsonl"}})
+    if (std::filesystem::exists(path, error)) say(Stream::report, "{}: {}\n", name, path.string());
 }
 
 /// What was wrong with the models of the shard's images: a line each, but one for all whose

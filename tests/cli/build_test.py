@@ -99,6 +99,16 @@ class BuildTest(TinyCase):
         self.assert_counts(self.build("-k", code=1), built=IMAGES, failed=4)
         self.assert_counts(self.build("-k", code=1), built=0, reused=IMAGES, failed=4)
 
+    def test_no_folder_is_named_that_nothing_was_made_in(self):
+        for environment in (self.tiny / "environments").iterdir():
+            (environment / "environment.scn").write_text("nothing that can be read\n")
+        run = self.run_it("build", self.recipe, "-o", self.out, "-k")
+        self.assertEqual(run.code, 1, run)
+        self.assertIn("0 built", run.out)
+        named = [line.split(": ", 1)[1] for line in run.out.splitlines() if line.startswith(("pictures: ", "manifest: "))]
+        for path in named:
+            self.assertTrue(os.path.exists(path), run)
+
     def test_explain_says_why(self):
         run = self.run_it("build", self.recipe, "-o", self.out, "--explain")
         self.assertIn("box.off/0 and 7 more: trace: new\n", run.out)
