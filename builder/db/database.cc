@@ -174,6 +174,24 @@ void Database::put_sphere(Hash128 model_part, int reader, const std::array<doubl
       .run();
 }
 
+std::optional<std::string> Database::find_known(const std::string& program,
+                                                const std::string& question) {
+  Statement row =
+      connection_->prepare("SELECT answer FROM known WHERE program = ?1 AND question = ?2");
+  if (!row.bind(1, program).bind(2, question).step()) return std::nullopt;
+  return row.text(0);
+}
+
+void Database::put_known(const std::string& program, const std::string& question,
+                         const std::string& answer) {
+  connection_->prepare("DELETE FROM known WHERE program != ?1").bind(1, program).run();
+  connection_->prepare("INSERT OR REPLACE INTO known VALUES (?1, ?2, ?3)")
+      .bind(1, program)
+      .bind(2, question)
+      .bind(3, answer)
+      .run();
+}
+
 bool Database::has_products() {
   return connection_->prepare("SELECT 1 FROM product LIMIT 1").step();
 }

@@ -133,6 +133,12 @@ class Database {
   std::optional<std::array<float, 6>> find_image_bounds(Hash128 image, int reader);
   void put_image_bounds(Hash128 image, int reader, const std::array<float, 6>& bounds);
 
+  /// What this program found out of a question before: of what may be found out again.
+  std::optional<std::string> find_known(const std::string& program, const std::string& question);
+  /// Forgets what other programs found.
+  void put_known(const std::string& program, const std::string& question,
+                 const std::string& answer);
+
   bool has_products();
   /// Keys of the pictures of which some samples had to be left out: few.
   std::vector<Hash128> pictures_with_rejected();

@@ -38,9 +38,16 @@ std::optional<FileStamp> stamp_in(int folder, const char* path) {
                    ns_of(status.st_ctim), std::uint64_t{status.st_ino}};
 }
 
-bool is_racy(const FileStamp& stamp) {
+std::int64_t now_ns() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
-  const std::int64_t now_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+}
+
+bool is_racy(const FileStamp& stamp) {
+  return is_racy(stamp, now_ns());
+}
+
+bool is_racy(const FileStamp& stamp, std::int64_t now_ns) {
   // mtime counts too, for file systems whose ctime is that of creation (FAT before Linux 5.18),
   // unless it was set to a time to come.
   const bool written_now = stamp.mtime_ns > now_ns - k_racy_ns && stamp.mtime_ns <= now_ns;

@@ -33,5 +33,8 @@ std::optional<FileStamp> stamp_in(int folder, const char* path);
 /// clean). Such a stamp must not be remembered. A file from the future (a clock that was set back)
 /// stays so until its time has come.
 bool is_racy(const FileStamp& stamp);
+/// The same, seen from a moment, nanoseconds since 1970.
+bool is_racy(const FileStamp& stamp, std::int64_t now_ns);
+std::int64_t now_ns();
 
 }  // namespace ds

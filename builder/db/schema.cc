@@ -73,6 +73,11 @@ CREATE TABLE placed (
   ctime_ns INTEGER NOT NULL DEFAULT 0,
   PRIMARY KEY (dataset, path)
 ) WITHOUT ROWID;
+CREATE TABLE known (            -- what a program found out and need not again
+  program TEXT NOT NULL,        -- another one may find otherwise
+  question TEXT NOT NULL, answer TEXT NOT NULL,
+  PRIMARY KEY (program, question)
+) WITHOUT ROWID;
 CREATE TABLE build (
   number INTEGER PRIMARY KEY,
   dataset TEXT NOT NULL,
@@ -87,9 +92,9 @@ CREATE INDEX product_rejected ON product (key)
   WHERE rejected_samples > 0 AND kind = 'image';
 CREATE INDEX product_capped ON product (key)
   WHERE instr(facts, '"capped":true') > 0 AND kind = 'image';
-PRAGMA user_version = 8;
+PRAGMA user_version = 9;
 )sql";
-static_assert(k_schema_version == 8, "the last line of k_tables states the version too");
+static_assert(k_schema_version == 9, "the last line of k_tables states the version too");
 
 /// From version 1 to 2.
 constexpr const char* k_add_facts = R"sql(
@@ -135,7 +140,16 @@ CREATE TABLE IF NOT EXISTS image_bounds (
   image TEXT NOT NULL, reader INTEGER NOT NULL, bounds TEXT NOT NULL,
   PRIMARY KEY (image, reader)
 ) WITHOUT ROWID;
-PRAGMA user_version = 8;
+)sql";
+
+/// From version 8 to 9.
+constexpr const char* k_add_known = R"sql(
+CREATE TABLE IF NOT EXISTS known (
+  program TEXT NOT NULL,
+  question TEXT NOT NULL, answer TEXT NOT NULL,
+  PRIMARY KEY (program, question)
+) WITHOUT ROWID;
+PRAGMA user_version = 9;
 )sql";
 
 std::int64_t user_version(Connection& connection) {
@@ -166,7 +180,8 @@ void prepare_schema(Connection& connection, const std::string& name) {
     if (version < 5) connection.execute(k_add_sphere);
     if (version < 6) connection.execute(k_add_rejected);
     if (version < 7) connection.execute(k_add_capped);
-    connection.execute(k_new_geometry);
+    if (version < 8) connection.execute(k_new_geometry);
+    connection.execute(k_add_known);
     transaction.commit();
     return;
   }

@@ -16,9 +16,10 @@ namespace ds {
 ///   7: product_capped
 ///   8: geometry.uvs, colors and box, and image_bounds; rows of geometry of older versions are
 ///      dropped, and their models read once more
+///   9: known
 /// An older file is converted when it is opened; a newer one is refused, since writing to it could
 /// lose what this program does not know.
-inline constexpr int k_schema_version = 8;
+inline constexpr int k_schema_version = 9;
 
 /// Makes the tables where the file is new. Throws Error(io) for a file of a newer version,
 /// DamagedDatabase for one that is some other program's.

@@ -3,12 +3,15 @@
 
 #include "builder/plan/keys.h"
 #include "tracer/base/canonical.h"
+#include "tracer/base/disk_error.h"
 #include "tracer/base/files.h"
 #include "tracer/base/hash_stream.h"
 #include "tracer/base/log.h"
 #include "tracer/render/images.h"
 #include "tracer/render/render.h"
 #include "tracer/scene/sdl.h"
+
+#include <utility>
 
 namespace ds {
 
@@ -23,6 +26,22 @@ MendedDamage damage_and_facts(const MeshReport& report) {
   if (report.has_uvs) known.emplace_back(k_has_uvs, 1);
   if (report.has_colors) known.emplace_back(k_has_colors, 1);
   return known;
+}
+
+void put_known(Database& database, const std::string& program,
+               const std::map<std::string, std::string>& known) {
+  if (known.empty()) return;
+  try {
+    Transaction transaction(database.connection());
+    for (const auto& [question, answer] : known)
+      database.put_known(program, question, answer);
+    transaction.commit();
+  } catch (const DiskFailed&) {  // it is found out again: no reason for a command to fail
+  }
+}
+
+std::string question_of(const std::filesystem::path& environment) {
+  return "environment " + environment.string();
 }
 
 }  // namespace
@@ -137,13 +156,38 @@ const Scene& Inputs::material(const std::filesystem::path& file) {
 
 const Scene& Inputs::environment(const std::filesystem::path& folder) {
   return once(environments_, folder, [this](const auto& path) {
-    Scene scene = read_environment(path);
+    const std::int64_t began_ns = now_ns();
+    const std::uint64_t warnings = warning_count();
+    std::vector<std::filesystem::path> files;
+    Scene scene = read_environment(path, &files);
     look_at_pixels(scene);
+    // What there is to warn of is to be said by each command.
+    if (warning_count() == warnings)
+      if (const auto sources = settled(files, began_ns))
+        keep_known(question_of(path), to_text(facts_of(scene), *sources));
     return scene;
   });
 }
 
+const EnvironmentFacts& Inputs::environment_facts(const std::filesystem::path& folder) {
+  return once(environment_facts_, folder, [this](const auto& path) {
+    if (const auto known = find_known(question_of(path)))
+      if (auto facts = facts_from_text(*known)) return *std::move(facts);
+    return facts_of(environment(path));
+  });
+}
+
+std::optional<std::string> Inputs::find_known(const std::string& question) {
+  if (program_.empty() || stamps_ == Stamps::ignore) return std::nullopt;
+  return database_.find_known(program_, question);
+}
+
+void Inputs::keep_known(const std::string& question, std::string answer) {
+  if (!program_.empty() && !answer.empty()) new_known_[question] = std::move(answer);
+}
+
 void Inputs::remember() {
+  put_known(database_, program_, std::exchange(new_known_, {}));
   if (new_models_.empty() && new_spheres_.empty() && new_bounds_.empty()) return;
   Transaction transaction(database_.connection());
   for (const NewModel& model : new_models_) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "builder/db/database.h"
+#include "builder/plan/environment_facts.h"
 #include "builder/recipe/camera_fit.h"
 #include "tracer/base/error.h"
 #include "tracer/scene/mesh.h"
@@ -30,7 +31,7 @@ class Inputs {
  public:
   /// The database must outlive this.
   explicit Inputs(Database& database, Stamps stamps = Stamps::trust)
-      : database_(database), stamps_(stamps) {}
+      : database_(database), stamps_(stamps), program_(running_program()) {}
   Stamps stamps() const { return stamps_; }
 
   /// mesh_hashes of the model as read, before normalisation. Throws what `read_model` throws.
@@ -50,8 +51,15 @@ class Inputs {
   /// what their materials have of unphysical, and was warned of.
   const Scene& material(const std::filesystem::path& file);
   const Scene& environment(const std::filesystem::path& folder);
+  /// Of an environment whose files have the stamps that they had when this program read it, without
+  /// reading it, unless there was anything to warn of.
+  const EnvironmentFacts& environment_facts(const std::filesystem::path& folder);
 
-  /// Writes what was found of models since the last call into the database.
+  /// What this program found out before, of a question that says all that the answer depends on.
+  std::optional<std::string> find_known(const std::string& question);
+  void keep_known(const std::string& question, std::string answer);
+
+  /// Writes what was found since the last call into the database.
   void remember();
 
  private:
@@ -88,6 +96,9 @@ class Inputs {
   Stamps stamps_;
   Known<ModelFacts> models_;
   Known<Scene> materials_, environments_;
+  Known<EnvironmentFacts> environment_facts_;
+  std::string program_;  ///< running_program
+  std::map<std::string, std::string> new_known_;
   std::vector<NewModel> new_models_;
   Known<Sphere> spheres_;
   std::map<Hash128, Sphere> new_spheres_;      ///< by the hash of the model part

@@ -98,6 +98,9 @@ Scene scene_without_model(Inputs& inputs, const ImageSpec& image) {
 const ToneMap& tone_map_of(const Recipe& recipe, const Scene& environment) {
   return recipe.outputs.tone_map ? *recipe.outputs.tone_map : environment.tone_map;
 }
+const ToneMap& tone_map_of(const Recipe& recipe, const EnvironmentFacts& environment) {
+  return recipe.outputs.tone_map ? *recipe.outputs.tone_map : environment.tone_map;
+}
 
 std::string canonical_model(const MeshHashes& mesh, MeshExtras reads,
                             const NormaliseOptions& options) {
@@ -146,16 +149,6 @@ TextForm form_of_parts(CanonicalText head) {
   for (std::size_t i = 0; i < 5; ++i)
     head.add(k_part_names[i], "");
   return {head.text(), std::span(k_part_names).first<5>()};
-}
-
-/// What mask and depth see of an environment.
-std::string canonical_shape(const Scene& environment) {
-  CanonicalText text;
-  for (const Object& object : environment.objects) {
-    text.add("object.geometry", geometry_hash(object.mesh, {}).hex());
-    text.add("object.camera_invisible", object.camera_invisible);
-  }
-  return text.text();
 }
 
 // Every member, and so no fewer: a struct with one more does not compile.
@@ -213,7 +206,8 @@ struct Kind {
   Shared<std::filesystem::path> material, environment;  ///< keep the addresses that are its name
   Hash128 material_part;
   MeshExtras reads;  ///< of a model, by the material
-  const std::string* program = nullptr;
+  Hash128 program;   ///< of its tokens, as they stand in a canonical text
+  bool made = false;
   EngineSettings settings;  ///< with seed 0
   TextForm engine;          ///< folded, "seed" to be filled
   std::optional<TextForm> kept;
@@ -233,8 +227,9 @@ class KeyMaker::State {
   Hash128 model_part(const ImageSpec& image, MeshExtras reads);
   Environment& environment_of(const ImageSpec& image);
   View& view_of(Environment& environment, const ImageSpec& image);
-  Kind& kind_of(const ImageSpec& image);
+  Kind& kind_of(const ImageSpec& image, const Environment& environment);
   const std::string& program(const ImageSpec& image);
+  Hash128 program_hash(const ImageSpec& image, const Environment& environment, Hash128 material);
   void add_outputs(ImageKeys& keys, Environment& environment, const std::string& id);
 
   const Recipe& recipe_;
@@ -283,13 +278,13 @@ Hash128 KeyMaker::State::model_part(const ImageSpec& image, MeshExtras reads) {
 Environment& KeyMaker::State::environment_of(const ImageSpec& image) {
   const auto found = environments_.find(image.environment_folder.identity());
   if (found != environments_.end()) return found->second;
-  const Scene& scene = inputs_.environment(image.environment_folder);
-  const ToneMap& tone_map = tone_map_of(recipe_, scene);
+  const EnvironmentFacts& facts = inputs_.environment_facts(image.environment_folder);
+  const ToneMap& tone_map = tone_map_of(recipe_, facts);
   Environment made;
   made.folder = image.environment_folder;
-  made.part = texts_.add(canonical_environment(scene));
+  made.part = texts_.add(facts.text);
   made.files_part = texts_.add(canonical_files(recipe_.outputs, tone_map));
-  made.shape = canonical_shape(scene);
+  made.shape = facts.shape;
   made.picture = output_form("image", canonical_tone_map(tone_map));
   return environments_.emplace(made.folder.identity(), std::move(made)).first->second;
 }
@@ -329,10 +324,29 @@ const std::string& KeyMaker::State::program(const ImageSpec& image) {
   return programs_.emplace_back(std::move(features), std::move(text)).second;
 }
 
-Kind& KeyMaker::State::kind_of(const ImageSpec& image) {
+/// Hash of the program's value in a canonical text, under which that is kept. It depends on the
+/// material, the environment and the lens, and on dsbuild itself.
+Hash128 KeyMaker::State::program_hash(const ImageSpec& image, const Environment& environment,
+                                      Hash128 material) {
+  const std::string question =
+      fmt::format("program {} {} {}", material.hex(), environment.part.hex(),
+                  image.camera.lens_radius_m > 0 ? "lens" : "pinhole");
+  if (const auto known = inputs_.find_known(question))
+    if (const auto hash = Hash128::from_hex(*known)) return *hash;
+  CanonicalText text;
+  text.add("program", program(image));
+  const std::string folded = texts_.fold(text.text());
+  const std::size_t at = folded.find(TextSet::k_reference) + 1;
+  const auto hash = Hash128::from_hex(std::string_view(folded).substr(at, 32));
+  DS_ASSERT(hash);  // programs are longer than the longest value
+  inputs_.keep_known(question, hash->hex());
+  return *hash;
+}
+
+Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& environment) {
   const bool lens = image.camera.lens_radius_m > 0;
   Kind& kind = kinds_[{image.material_file.identity(), image.environment_folder.identity(), lens}];
-  if (kind.program != nullptr && same_but_seed(kind.settings, image.engine)) return kind;
+  if (kind.made && same_but_seed(kind.settings, image.engine)) return kind;
   EngineSettings settings = image.engine;
   settings.seed = 0;
   kind.material = image.material_file;
@@ -340,11 +354,12 @@ Kind& KeyMaker::State::kind_of(const ImageSpec& image) {
   const Scene& material = inputs_.material(image.material_file);
   kind.material_part = texts_.add(canonical_material(material));
   kind.reads = reads_of(material, static_cast<int>(material.materials.size()) - 1);
-  const std::string& text = program(image);
-  kind.engine = TextForm(texts_.fold(canonical_engine(settings, text)), {"seed"});
+  kind.program = program_hash(image, environment, kind.material_part);
+  kind.engine =
+      TextForm(canonical_engine(settings, TextSet::k_reference + kind.program.hex()), {"seed"});
   kind.kept.reset();
   kind.settings = settings;
-  kind.program = &text;
+  kind.made = true;
   return kind;
 }
 
@@ -369,7 +384,7 @@ void KeyMaker::State::add_outputs(ImageKeys& keys, Environment& environment,
 ImageKeys KeyMaker::State::keys(const ImageSpec& image) {
   Environment& environment = environment_of(image);
   View& view = view_of(environment, image);
-  Kind& kind = kind_of(image);
+  Kind& kind = kind_of(image, environment);
   ImageKeys keys;
   keys.parts = {model_part(image, kind.reads),
                 kind.material_part,
@@ -387,22 +402,27 @@ ImageKeys KeyMaker::State::keys(const ImageSpec& image) {
 }
 
 Hash128 KeyMaker::State::kept_key(const ImageSpec& image, const ImageKeys& keys) {
-  Kind& kind = kind_of(image);
+  Kind& kind = kind_of(image, environment_of(image));
   if (!kind.kept)
-    kind.kept = TextForm(canonical_kept_engine(kind.settings, *kind.program), {"seed"});
+    kind.kept = TextForm(canonical_kept_engine(kind.settings, program(image)), {"seed"});
   const Hash128 engine = kind.kept->hash({view_of_digits(fmt::format_int(image.engine.seed))});
   const auto& parts = keys.parts;
   return film_sums_.hash({HexText(parts[0]), HexText(parts[1]), HexText(parts[2]),
                           HexText(parts[3]), HexText(engine)});
 }
 
-/// The other texts were added when the first image of their kind was met.
+/// The other texts were added when the first image of their kind was met, but for a program that was
+/// known by its hash.
 void KeyMaker::State::add_texts(const ImageSpec& image) {
-  Kind& kind = kind_of(image);
+  Kind& kind = kind_of(image, environment_of(image));
   texts_.add(
       canonical_model(inputs_.model_hashes(image.model_file), kind.reads, recipe_.normalise));
   texts_.add(canonical_camera(image.camera));
   texts_.add(kind.engine.fill({view_of_digits(fmt::format_int(image.engine.seed))}));
+  if (texts_.find(kind.program) != nullptr) return;
+  CanonicalText text;
+  text.add("program", program(image));
+  texts_.fold(text.text());
 }
 
 KeyMaker::KeyMaker(const Recipe& recipe, Inputs& inputs, TextSet& texts)

@@ -61,6 +61,7 @@ Scene scene_without_model(Inputs& inputs, const ImageSpec& image);
 
 /// The tone map an image is developed with: the recipe's, else its environment's.
 const ToneMap& tone_map_of(const Recipe& recipe, const Scene& environment);
+const ToneMap& tone_map_of(const Recipe& recipe, const EnvironmentFacts& environment);
 
 /// Canonical text of the model part: the mesh, with what its material reads of uvs and colours, and
 /// the normalisation steps that are switched on.

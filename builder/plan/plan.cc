@@ -182,20 +182,21 @@ Concern count_unphysical(const std::vector<PlannedImage>& images, Inputs& inputs
   Concern concern{"assets_unphysical", 0, 0, {}};
   std::set<const void*> seen;  // the files' paths are long, and images many
   std::set<std::string> files;
-  const auto look = [&](const Shared<fs::path>& asset, const auto& read) {
+  const auto look = [&](const Shared<fs::path>& asset, const auto& is_unphysical) {
     if (!seen.insert(asset.identity()).second || !files.insert(asset->native()).second) return;
-    const Scene& scene = read();
     ++concern.of;
-    if (std::any_of(scene.materials.begin(), scene.materials.end(),
-                    [](const Material& material) { return !material.unphysical.empty(); }))
-      add_example(concern, asset->filename().string());
+    if (is_unphysical()) add_example(concern, asset->filename().string());
   };
   for (const PlannedImage& image : images) {
     if (image.error) continue;
     const ImageSpec& spec = image.spec;
-    look(spec.material_file, [&]() -> const Scene& { return inputs.material(spec.material_file); });
+    look(spec.material_file, [&] {
+      const std::vector<Material>& parts = inputs.material(spec.material_file).materials;
+      return std::any_of(parts.begin(), parts.end(),
+                         [](const Material& material) { return !material.unphysical.empty(); });
+    });
     look(spec.environment_folder,
-         [&]() -> const Scene& { return inputs.environment(spec.environment_folder); });
+         [&] { return inputs.environment_facts(spec.environment_folder).unphysical; });
   }
   return concern;
 }
@@ -229,7 +230,7 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
                   inputs.model_sphere(image.spec.model_file, dataset.recipe.normalise));
       if (image.spec.engine.target)
         image.spec.engine.target->tone_map =
-            tone_map_of(dataset.recipe, inputs.environment(image.spec.environment_folder));
+            tone_map_of(dataset.recipe, inputs.environment_facts(image.spec.environment_folder));
       image.keys = keys.keys(image.spec);
       check_names(image.keys.outputs);
       if (!model.is_same(image.spec.model_file)) {

@@ -13,10 +13,8 @@
 namespace ds {
 namespace {
 
-constexpr char k_reference = '@';
-
 std::optional<Hash128> reference(std::string_view value) {
-  if (value.empty() || value.front() != k_reference) return std::nullopt;
+  if (value.empty() || value.front() != TextSet::k_reference) return std::nullopt;
   return Hash128::from_hex(value.substr(1));
 }
 

@@ -21,6 +21,7 @@ using TextLookup = std::function<std::optional<std::string>(Hash128)>;
 class TextSet {
  public:
   static constexpr std::size_t k_longest_value = 200;
+  static constexpr char k_reference = '@';
 
   /// Keeps the long values and gives the text that is left, its own hash not yet kept.
   std::string fold(std::string_view canonical);

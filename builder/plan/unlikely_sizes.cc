@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <unordered_map>
 
 namespace ds {
 namespace {
@@ -218,7 +217,7 @@ class Finder {
                        spec.engine.height,
                        box_,
                        {},
-                       environment_m(spec.environment_folder)};
+                       inputs_.environment_facts(spec.environment_folder).longest_side_m};
     if (recipe_.normalise.centre == Centring::mass) {
       const Vec3d half = side_of(box_) * 0.5;
       image.model_unsure = {half.x, half.y, 0};
@@ -226,30 +225,10 @@ class Finder {
     return image;
   }
 
-  double environment_m(const Shared<std::filesystem::path>& folder) {
-    const auto [known, is_new] = environments_.try_emplace(folder.identity(), 0.0);
-    if (is_new) {
-      std::optional<Box> all;
-      for (const Object& object : inputs_.environment(folder).objects) {
-        const Box box = bounds_of(object.mesh);
-        if (!all) all = box;
-        const auto least = [](double a, double b) { return std::min(a, b); };
-        const auto most = [](double a, double b) { return std::max(a, b); };
-        all = Box{{least(all->least.x, box.least.x), least(all->least.y, box.least.y),
-                   least(all->least.z, box.least.z)},
-                  {most(all->most.x, box.most.x), most(all->most.y, box.most.y),
-                   most(all->most.z, box.most.z)}};
-      }
-      if (all) known->second = longest(side_of(*all));
-    }
-    return known->second;
-  }
-
   const Recipe& recipe_;
   Inputs& inputs_;
   Shared<std::filesystem::path> model_;  // of the image before: a model's images follow each other
   Box box_;
-  std::unordered_map<const void*, double> environments_;
   std::map<UnlikelySize, Found> found_;
 };
 

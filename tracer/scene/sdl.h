@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace ds {
 
@@ -22,7 +23,10 @@ Scene read_material(const std::filesystem::path& file);
 /// Reads an environment folder: `environment.scn` (textures, materials, shapes, objects, lights)
 /// and, if there, `environment.cfg` (film.imagepipeline.*: tone map). PLY and image paths are
 /// relative to the folder.
-Scene read_environment(const std::filesystem::path& folder);
+/// `files` gets the files that were read, or looked for in vain: where none of them changes, neither
+/// does what is read.
+Scene read_environment(const std::filesystem::path& folder,
+                       std::vector<std::filesystem::path>* files = nullptr);
 
 /// The environment with one more object: `mesh` in `material`'s last material, object id
 /// `k_model_object_id`. Indices of the material's scene are moved behind the environment's. The

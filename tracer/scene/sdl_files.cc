@@ -38,7 +38,8 @@ Scene read_material(const std::filesystem::path& file) {
   return material;
 }
 
-Scene read_environment(const std::filesystem::path& folder) {
+Scene read_environment(const std::filesystem::path& folder,
+                       std::vector<std::filesystem::path>* files) {
   const std::filesystem::path scene_file = folder / "environment.scn";
   const std::filesystem::path film_file = folder / "environment.cfg";
   require_file(scene_file);
@@ -66,6 +67,10 @@ Scene read_environment(const std::filesystem::path& folder) {
   diagnostics.throw_if_any();
   warn_of_repeats(reader.properties);
   warn_of_repeats(film.properties);
+  if (files != nullptr) {
+    *files = std::move(reader.files);
+    files->insert(files->end(), {scene_file, film_file});
+  }
   Scene environment = prune_environment(std::move(reader.scene));
   warn_of_materials(environment);
   warn_of_environment(environment, folder.string());

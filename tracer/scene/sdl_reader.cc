@@ -239,6 +239,7 @@ std::optional<std::filesystem::path> SdlNode::file(std::string_view property) co
   const std::optional<std::string> name = text(property);
   if (!name) return std::nullopt;
   std::filesystem::path path = reader_->folder / *name;
+  reader_->files.push_back(path);
   std::error_code ignored;
   if (std::filesystem::is_regular_file(path, ignored)) return path;
   reader_->broken.insert(prefix_);

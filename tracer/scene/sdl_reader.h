@@ -54,6 +54,7 @@ struct SdlReader {
   /// "scene.materials.body": things that a finding stands about. What refers to them is not to
   /// blame, so that one mistake is one finding.
   std::set<std::string> broken;
+  std::vector<std::filesystem::path> files;  ///< that properties name
   std::set<std::string> missed;  ///< names that were looked for in vain, and said to be so
 };
 

@@ -152,6 +152,20 @@ TEST(Database, LogsBuildsNewestFirst) {
   EXPECT_EQ(builds[1].outcome, "running");
 }
 
+TEST(Database, KeepsWhatOneProgramFoundOut) {
+  Database database{std::filesystem::path()};
+  EXPECT_FALSE(database.find_known("one", "what?"));
+  database.put_known("one", "what?", "this");
+  database.put_known("one", "where?", "here");
+  EXPECT_EQ(database.find_known("one", "what?"), "this");
+  database.put_known("one", "what?", "that");
+  EXPECT_EQ(database.find_known("one", "what?"), "that");
+  EXPECT_FALSE(database.find_known("two", "what?"));
+  database.put_known("two", "what?", "it");
+  EXPECT_EQ(database.find_known("two", "what?"), "it");
+  EXPECT_FALSE(database.find_known("one", "where?")) << "of a program that is no more";
+}
+
 TEST(Database, ReadsAFileOfVersionOne) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "db.sqlite";

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/plan/environment_facts.h"
+
+#include "tracer/base/canonical.h"
+#include "tracer/base/error.h"
+#include "tracer/scene/sdl.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace ds {
+namespace {
+
+using nlohmann::json;
+
+/// What mask and depth see of an environment.
+std::string canonical_shape(const Scene& environment) {
+  CanonicalText text;
+  for (const Object& object : environment.objects) {
+    text.add("object.geometry", geometry_hash(object.mesh, {}).hex());
+    text.add("object.camera_invisible", object.camera_invisible);
+  }
+  return text.text();
+}
+
+double longest_side(const Scene& environment) {
+  if (environment.objects.empty()) return 0;
+  Box all = bounds_of(environment.objects.front().mesh);
+  for (const Object& object : environment.objects) {
+    const Box box = bounds_of(object.mesh);
+    all = {{std::min(all.least.x, box.least.x), std::min(all.least.y, box.least.y),
+            std::min(all.least.z, box.least.z)},
+           {std::max(all.most.x, box.most.x), std::max(all.most.y, box.most.y),
+            std::max(all.most.z, box.most.z)}};
+  }
+  const Vec3d side = all.most - all.least;
+  return std::max({side.x, side.y, side.z});
+}
+
+json to_json(const std::optional<FileStamp>& stamp) {
+  if (!stamp) return {};
+  return {stamp->size_bytes, stamp->mtime_ns, stamp->ctime_ns, stamp->inode};
+}
+
+bool has_stamp(const json& file) {
+  const std::optional<FileStamp> now = stamp_of(file.at(0).get<std::string>());
+  return to_json(now) == file.at(1);
+}
+
+json to_json(const ToneMap& map) {
+  const auto& [kind, scale, prescale, postscale, burn, gamma] = map;
+  return {static_cast<int>(kind), scale, prescale, postscale, burn, gamma};
+}
+
+ToneMap tone_map_from(const json& value) {
+  const auto number = [&](std::size_t i) { return value.at(i).get<float>(); };
+  return {static_cast<ToneMap::Kind>(value.at(0).get<int>()),
+          number(1),
+          number(2),
+          number(3),
+          number(4),
+          number(5)};
+}
+
+}  // namespace
+
+EnvironmentFacts facts_of(const Scene& environment) {
+  return {canonical_environment(environment), canonical_shape(environment), environment.tone_map,
+          longest_side(environment),
+          std::any_of(environment.materials.begin(), environment.materials.end(),
+                      [](const Material& material) { return !material.unphysical.empty(); })};
+}
+
+std::string to_text(const EnvironmentFacts& facts, const std::vector<SourceFile>& files) {
+  json sources = json::array();
+  for (const SourceFile& file : files)
+    sources.push_back({file.path.string(), to_json(file.stamp)});
+  try {
+    return json{{"files", std::move(sources)},
+                {"text", facts.text},
+                {"shape", facts.shape},
+                {"tone_map", to_json(facts.tone_map)},
+                {"longest_side_m", facts.longest_side_m},
+                {"unphysical", facts.unphysical}}
+        .dump();
+  } catch (const json::exception&) {  // a name that is no UTF-8
+    return "";
+  }
+}
+
+std::optional<EnvironmentFacts> facts_from_text(const std::string& text) {
+  try {
+    const json object = json::parse(text);
+    const json& files = object.at("files");
+    if (!std::all_of(files.begin(), files.end(), has_stamp)) return std::nullopt;
+    return EnvironmentFacts{
+        object.at("text").get<std::string>(), object.at("shape").get<std::string>(),
+        tone_map_from(object.at("tone_map")), object.at("longest_side_m").get<double>(),
+        object.at("unphysical").get<bool>()};
+  } catch (const json::exception&) {
+    return std::nullopt;
+  } catch (const Error&) {  // a file that cannot be looked at: reading it says why
+    return std::nullopt;
+  }
+}
+
+std::optional<std::vector<SourceFile>> settled(const std::vector<std::filesystem::path>& files,
+                                               std::int64_t began_ns) {
+  std::vector<SourceFile> sources;
+  for (const std::filesystem::path& file : files) {
+    sources.push_back({file, stamp_of(file)});
+    if (sources.back().stamp && is_racy(*sources.back().stamp, began_ns)) return std::nullopt;
+  }
+  return sources;
+}
+
+std::string running_program() {
+  const std::optional<FileStamp> stamp = stamp_of("/proc/self/exe");
+  return stamp ? to_json(stamp).dump() : std::string();
+}
+
+}  // namespace ds
