@@ -2,7 +2,7 @@
 # Flags every target of the project is compiled with, and the two functions that declare targets.
 
 add_library(ds_options INTERFACE)
-target_include_directories(ds_options INTERFACE "${CMAKE_SOURCE_DIR}")
+target_include_directories(ds_options INTERFACE "${CMAKE_SOURCE_DIR}" "${CMAKE_BINARY_DIR}/generated")
 # Strict arithmetic on the host too: what it computes (normalised models, tone maps) is in the pixels.
 target_compile_options(ds_options INTERFACE -ffp-contract=off -fno-fast-math
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast -Wnon-virtual-dtor

@@ -115,7 +115,7 @@ void add_materials(Choices& choices, const Scene& scene, const std::vector<bool>
     const std::string type(type_of(material).name);
     if (!worn[i] || type == "matte") continue;
     const std::string name = type + " of " + material.name;
-    if (type == "mix") {
+    if (type_of(material).children > 0) {
       add(choices, name,
           [i](Subject& s) { s.scene.materials[i] = first_part(s.scene, s.scene.materials[i]); });
       continue;

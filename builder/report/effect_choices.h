@@ -28,7 +28,7 @@ struct EffectChoices {
 ///                       type has that input, else with its albedo; a mix as its first part
 ///   hidden objects      what camera rays pass through is seen
 ///   smooth normals      every triangle flat
-///   guide to caustics   paths leave dull surfaces by their BSDF alone: other noise
+///   guide to caustics   paths leave by their BSDF alone: other noise
 /// Each effect that effects_of says is simulated is left out whole by one of these, or by the least
 /// set of them that does, as one more choice ("spot lights", "glossy2 materials"), or is kept for a
 /// reason. Light is not taken from a scene that has no other. Nothing here names a material, a

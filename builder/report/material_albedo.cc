@@ -24,11 +24,6 @@ constexpr int k_samples = 4096;
 constexpr std::array k_steps{0.8986537126286992, 0.8075784952213447, 0.7257334129697598,
                              0.6521830259439716, 0.5860866975779693, 0.5266889867007358};
 
-// A stand-in for the one row of the list that has no BSDF.
-BsdfSample mix_sample(const float*, Viewer, real2, real2) {
-  return kernels::no_sample();
-}
-
 using Sampling = BsdfSample (*)(const float*, Viewer, real2, real2);
 
 Sampling sampling_of(int type) {
@@ -37,7 +32,7 @@ Sampling sampling_of(int type) {
   [](const float* p, Viewer viewer, real2 u, real2 lobe) {                   \
     return prefix##_sample(DS_PREPARED(prefix, p, viewer), viewer, u, lobe); \
   },
-  static constexpr Sampling rows[] = {DS_ALL_MATERIALS(DS_SAMPLING)};
+  static constexpr Sampling rows[] = {DS_SCATTERING_MATERIALS(DS_SAMPLING)};
 #undef DS_SAMPLING
   return rows[type];
 }
@@ -54,7 +49,7 @@ std::vector<float> values_of(const Material& material, const NodeType& row) {
 
 Vec3 material_albedo(const Material& material) {
   const NodeType& row = material_types()[static_cast<std::size_t>(material.type)];
-  DS_ASSERT(row.name != "mix");
+  DS_ASSERT(row.children == 0);
   const std::vector<float> values = values_of(material, row);
   const Sampling sample = sampling_of(material.type);
   Vec3d sum{};

@@ -10,7 +10,7 @@
 
 namespace ds {
 
-/// The tree as the kernels read it (layout: tracer/kernels/types.h).
+/// The tree as the kernels read it (layout: tracer/kernels/scene_data.h).
 struct Bvh {
   std::vector<float> nodes;   ///< k_node_vectors * 8 floats a node; node 0 is the root
   std::vector<float> leaves;  ///< k_leaf_vectors * 8 words a leaf
@@ -25,7 +25,7 @@ inline constexpr int k_least_bvh_width = 2, k_most_bvh_width = 8;
 /// children, k_least_bvh_width to k_most_bvh_width; its layout is of eight, and leaves hold up to
 /// eight triangles, whatever the width. Quality and width change the speed of rays, never what they
 /// hit. Throws Error(device) where Embree fails or the tree is deeper than the kernels' stack
-/// allows (k_bvh_depth of kernels/types.h), which a narrow one is sooner.
+/// allows (k_bvh_depth of kernels/scene_data.h), which a narrow one is sooner.
 Bvh build_bvh(std::span<const std::array<Vec3, 3>> triangles,
               BvhQuality quality = BvhQuality::medium, int width = k_most_bvh_width);
 

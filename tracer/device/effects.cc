@@ -3,6 +3,7 @@
 
 #include "tracer/base/error.h"
 #include "tracer/device/program_text.h"
+#include "tracer/kernels/layout.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
 
@@ -100,8 +101,7 @@ void add_nodes(const Scene& scene, const Features& f, EffectList& list) {
   const NodeCallers callers = node_callers(scene);
   for (std::size_t i = 0; i < material_types().size(); ++i) {
     const NodeType& type = material_types()[i];
-    const bool simulated =
-        type.name == "mix" ? f.mix : Features::number(f.materials, type.kernel_prefix) >= 0;
+    const bool simulated = f.has_material(type.kernel_prefix);
     const bool there =
         std::any_of(scene.materials.begin(), scene.materials.end(),
                     [&](const Material& material) { return material.type == static_cast<int>(i); });
@@ -162,24 +162,27 @@ void add_camera(const Scene& scene, const Camera& camera, const Features& f, Eff
 void add_transport(const Scene& scene, const Features& f, EffectList& list) {
   Callers sampled, beyond, lobes, guide;
   for (const std::string& kind : f.lights)
-    if (samples_light(kind)) sampled.add(kind);
+    if (has_trait(light_type(kind), kernels::k_trait_sampled)) sampled.add(kind);
   list.add("transport", "sampling of lights", samples_lights(f), sampled,
            f.lights.empty() ? "there is no light" : "scattered rays find a constant sky as well");
   for (const std::string& kind : f.escape_lights)
     beyond.add(kind);
   list.add("transport", "light from beyond the scene", !f.escape_lights.empty(), beyond,
            "no light lies beyond the scene");
-  for (const std::string& name : f.materials)
-    if (has_lobes(name)) lobes.add(name);
-  if (f.mix) lobes.add("mix");
+  for (const NodeType& type : material_types())
+    if (has_trait(type, kernels::k_trait_lobes) && f.has_material(type.kernel_prefix))
+      lobes.add(std::string(type.kernel_prefix));
   list.add("transport", "choice among lobes", f.lobe_choice, lobes,
            "every material shown has one lobe");
   for (const Object& object : scene.objects)
     if (f.guide && object.id == k_model_object_id) guide.add(named("object", object.name));
   list.add("transport", "guide to caustics", f.guide, guide,
-           std::none_of(f.lights.begin(), f.lights.end(), is_small_light)
+           std::none_of(f.lights.begin(), f.lights.end(),
+                        [](const std::string& kind) {
+                          return has_trait(light_type(kind), kernels::k_trait_small);
+                        })
                ? "no light is small"
-               : "the model is not shiny, or nothing shown is dull");
+               : "the model casts no caustics, or nothing shown receives them");
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ void add_cumulative(const std::vector<double>& weights, Words& tables);
 /// one word each.
 LightRow infinite_row(const Scene& scene, const Light& light, double scene_radius, Words& tables);
 
-/// Rows of colours in the tables (kernels/types.h), and their offset; none where no texture of the
+/// Rows of colours in the tables (kernels/scene_data.h), and their offset; none where no texture of the
 /// program reads them.
 std::uint32_t pack_colors(const Scene& scene, const Features& features, Words& tables);
 

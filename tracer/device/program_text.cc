@@ -4,6 +4,7 @@
 #include "tracer/base/error.h"
 #include "tracer/device/texture_code.h"
 #include "tracer/kernels/embedded.h"
+#include "tracer/kernels/layout.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
 
@@ -13,8 +14,6 @@
 
 namespace ds {
 namespace {
-
-constexpr std::string_view k_mix = "mix";
 
 std::string_view embedded_text(std::string_view path) {
   for (const EmbeddedFile& file : std::span(k_embedded_files, k_embedded_file_count))
@@ -76,12 +75,14 @@ std::vector<bool> used_materials(const Scene& scene) {
   return used;
 }
 
-/// Keeps the order of the tables, so that equal sets make equal programs.
-std::vector<std::string> prefixes(std::span<const NodeType> types,
-                                  const std::vector<bool>& present) {
+/// Those present, with children or without. Keeps the order of the tables, so that equal sets make
+/// equal programs.
+std::vector<std::string> prefixes(std::span<const NodeType> types, const std::vector<bool>& present,
+                                  bool with_children = false) {
   std::vector<std::string> list;
   for (std::size_t i = 0; i < types.size(); ++i)
-    if (present[i]) list.emplace_back(types[i].kernel_prefix);
+    if (present[i] && (types[i].children > 0) == with_children)
+      list.emplace_back(types[i].kernel_prefix);
   return list;
 }
 
@@ -100,29 +101,23 @@ void add_materials(const Scene& scene, Features& f) {
       textures[static_cast<std::size_t>(texture)] = true;
     f.texture_stack = std::max(f.texture_stack, code.stack);
   }
-  const int mix = find_type(material_types(), k_mix);
-  f.mix = present[static_cast<std::size_t>(mix)];
-  present[static_cast<std::size_t>(mix)] = false;
   f.materials = prefixes(material_types(), present);
+  f.choosers = prefixes(material_types(), present, true);
   f.textures = prefixes(texture_types(), textures);
 }
 
-const std::vector<std::string> k_local_lights = {"mesh", "point", "spot"};
-const std::vector<std::string> k_escape_lights = {"constant_infinite", "infinite", "sun"};
-
-/// Whether the model shows a shiny material, itself or in a mix.
-bool model_is_shiny(const Scene& scene) {
-  std::vector<bool> shiny(scene.materials.size(), false);
-  for (std::size_t i = 0; i < shiny.size(); ++i) {
-    const Material& material = scene.materials[i];
-    shiny[i] = is_shiny(material_types()[static_cast<std::size_t>(material.type)].kernel_prefix);
-    for (const int child : material.children)
-      if (child >= 0 && shiny[static_cast<std::size_t>(child)]) shiny[i] = true;
-  }
+/// Whether the model shows a material that casts caustics, itself or as a part.
+bool model_casts_caustics(const Scene& scene) {
+  const std::vector<bool> casts = materials_with(scene, kernels::k_trait_casts_caustics);
   return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
     return object.id == k_model_object_id && object.material >= 0 &&
-           shiny[static_cast<std::size_t>(object.material)];
+           casts[static_cast<std::size_t>(object.material)];
   });
+}
+
+void add_light(const LightType& type, Features& f) {
+  f.lights.emplace_back(type.kernel_prefix);
+  if (has_trait(type, kernels::k_trait_beyond)) f.escape_lights.emplace_back(type.kernel_prefix);
 }
 
 void add_lights(const Scene& scene, Features& f) {
@@ -132,13 +127,20 @@ void add_lights(const Scene& scene, Features& f) {
   for (const Object& object : scene.objects)
     if (object.material >= 0 && shines(scene.materials[static_cast<std::size_t>(object.material)]))
       names.insert("mesh");
-  for (const std::string& name : k_local_lights)
-    if (names.contains(name)) f.lights.push_back(name);
-  for (const std::string& name : k_escape_lights) {
-    if (!names.contains(name)) continue;
-    f.lights.push_back(name);
-    f.escape_lights.push_back(name);
-  }
+  for (const LightType& type : light_types())
+    if (names.contains(type.kernel_prefix)) add_light(type, f);
+}
+
+/// Whether a material of the program, or a chooser, has the trait.
+bool any_material(const Features& f, unsigned trait) {
+  return std::any_of(material_types().begin(), material_types().end(), [&](const NodeType& type) {
+    return has_trait(type, trait) && f.has_material(type.kernel_prefix);
+  });
+}
+
+bool any_light(const Features& f, unsigned trait) {
+  return std::any_of(f.lights.begin(), f.lights.end(),
+                     [&](const std::string& name) { return has_trait(light_type(name), trait); });
 }
 
 }  // namespace
@@ -159,29 +161,20 @@ std::string_view light_kind_name(LightKind kind) {
   DS_ASSERT(false);
 }
 
-bool samples_light(std::string_view kind) {
-  return kind != "constant_infinite";
-}
-
 bool samples_lights(const Features& f) {
-  return std::any_of(f.lights.begin(), f.lights.end(), samples_light);
+  return any_light(f, kernels::k_trait_sampled);
 }
 
-bool has_lobes(std::string_view material) {
-  return material == "glossy2" || material == "metal2" || material == "glass";
-}
-
-bool is_small_light(std::string_view kind) {
-  return kind == "point" || kind == "spot" || kind == "sun" || kind == "mesh";
-}
-
-bool is_shiny(std::string_view material) {
-  return material == "glossy2" || material == "metal2" || material == "mirror" ||
-         material == "glass";
-}
-
-bool is_dull(std::string_view material) {
-  return material == "matte" || material == "glossy2";
+std::vector<bool> materials_with(const Scene& scene, unsigned traits) {
+  std::vector<bool> have(scene.materials.size(), false);
+  // Children stand before their parent.
+  for (std::size_t i = 0; i < have.size(); ++i) {
+    const Material& material = scene.materials[i];
+    have[i] = has_trait(material_types()[static_cast<std::size_t>(material.type)], traits);
+    for (const int child : material.children)
+      if (child >= 0 && have[static_cast<std::size_t>(child)]) have[i] = true;
+  }
+  return have;
 }
 
 bool shines(const Light& light) {
@@ -198,6 +191,10 @@ int Features::number(const std::vector<std::string>& list, std::string_view name
   return found == list.end() ? -1 : static_cast<int>(found - list.begin());
 }
 
+bool Features::has_material(std::string_view prefix) const {
+  return number(materials, prefix) >= 0 || number(choosers, prefix) >= 0;
+}
+
 Features features_of(const Scene& scene, const Camera& camera) {
   Features f;
   add_materials(scene, f);
@@ -205,24 +202,23 @@ Features features_of(const Scene& scene, const Camera& camera) {
   f.lens = camera.lens_radius_m > 0;
   f.camera_invisible = std::any_of(scene.objects.begin(), scene.objects.end(),
                                    [](const Object& object) { return object.camera_invisible; });
-  f.lobe_choice = f.mix || std::any_of(f.materials.begin(), f.materials.end(), has_lobes);
-  f.guide = std::any_of(f.lights.begin(), f.lights.end(), is_small_light) &&
-            model_is_shiny(scene) && std::any_of(f.materials.begin(), f.materials.end(), is_dull);
+  f.lobe_choice = any_material(f, kernels::k_trait_lobes);
+  f.guide = any_light(f, kernels::k_trait_small) && model_casts_caustics(scene) &&
+            any_material(f, kernels::k_trait_receives_caustics);
   return f;
 }
 
 Features all_features() {
   Features f;
   for (const NodeType& type : material_types()) {
-    if (type.name != k_mix) f.materials.emplace_back(type.kernel_prefix);
+    (type.children > 0 ? f.choosers : f.materials).emplace_back(type.kernel_prefix);
     f.material_inputs = std::max(f.material_inputs, input_floats(type));
   }
   for (const NodeType& type : texture_types())
     f.textures.emplace_back(type.kernel_prefix);
-  f.lights = k_local_lights;
-  f.lights.insert(f.lights.end(), k_escape_lights.begin(), k_escape_lights.end());
-  f.escape_lights = k_escape_lights;
-  f.mix = f.lens = f.camera_invisible = f.lobe_choice = f.guide = true;
+  for (const LightType& type : light_types())
+    add_light(type, f);
+  f.lens = f.camera_invisible = f.lobe_choice = f.guide = true;
   f.texture_stack = k_texture_stack_limit;
   return f;
 }
@@ -247,26 +243,31 @@ std::string path_program_text(const Features& f) {
   // Alone, a constant sky needs no next-event estimation at all.
   if (samples_lights(f)) head += "#define DS_LIGHTS_SAMPLED\n";
   if (Features::number(f.lights, "mesh") >= 0) head += "#define DS_MESH_LIGHTS\n";
-  if (f.mix) head += fmt::format("#define DS_MIX_NUMBER {}\n", f.materials.size());
+  if (!f.choosers.empty()) {
+    std::vector<std::string> all = f.materials;
+    all.insert(all.end(), f.choosers.begin(), f.choosers.end());
+    head += list_definition("DS_CHOOSERS", f.choosers, all);
+    head += fmt::format("#define DS_FIRST_CHOOSER {}\n", f.materials.size());
+  }
   if (f.lens) head += "#define DS_LENS\n";
   if (f.camera_invisible) head += "#define DS_CAMERA_INVISIBLE\n";
   if (f.lobe_choice) head += "#define DS_LOBE_CHOICE\n";
   if (f.guide) {
-    std::string dull;
-    for (const std::string& name : f.materials)
-      if (is_dull(name))
-        dull += fmt::format("{}((type) == {}u)", dull.empty() ? "" : " | ",
-                            Features::number(f.materials, name));
-    head += fmt::format("#define DS_GUIDED(type) ({})\n", dull);
+    std::string guided;
+    for (const NodeType& type : material_types())
+      if (const int number = Features::number(f.materials, type.kernel_prefix);
+          number >= 0 && has_trait(type, kernels::k_trait_receives_caustics))
+        guided += fmt::format("{}((type) == {}u)", guided.empty() ? "" : " | ", number);
+    head += fmt::format("#define DS_GUIDED(type) ({})\n", guided);
   }
 
   std::set<std::string, std::less<>> done;
   std::string text = head;
   for (const std::string& name : f.textures)
     append_with_includes(fmt::format("tracer/kernels/textures/{}.h", name), done, text);
-  for (const std::string& name : f.materials)
-    append_with_includes(fmt::format("tracer/kernels/materials/{}.h", name), done, text);
-  if (f.mix) append_with_includes("tracer/kernels/materials/mix.h", done, text);
+  for (const auto* list : {&f.materials, &f.choosers})
+    for (const std::string& name : *list)
+      append_with_includes(fmt::format("tracer/kernels/materials/{}.h", name), done, text);
   for (const std::string& name : f.lights)
     append_with_includes(fmt::format("tracer/kernels/lights/{}.h", name), done, text);
   append_with_includes("tracer/kernels/path.cl", done, text);

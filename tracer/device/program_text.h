@@ -12,46 +12,37 @@ namespace ds {
 /// What a scene calls for; the program contains this and nothing else. Numbers are the positions in
 /// these lists.
 struct Features {
-  /// Kernel prefixes, in the order of lists.h; mix is not among them.
-  std::vector<std::string> materials;
-  std::vector<std::string> textures;  ///< kernel prefixes
-  /// "point", "spot", "mesh", "constant_infinite", "infinite", "sun".
-  std::vector<std::string> lights;
+  /// Kernel prefixes, in the order of lists.h. Those that choose among other materials are numbered
+  /// behind all that do not.
+  std::vector<std::string> materials, choosers;
+  std::vector<std::string> textures;       ///< kernel prefixes
+  std::vector<std::string> lights;         ///< kernel prefixes
   std::vector<std::string> escape_lights;  ///< those of `lights` that lie beyond the scene
-  bool mix = false;
   bool lens = false;
   bool camera_invisible = false;  ///< an object that camera rays pass through
-  bool lobe_choice = false;       ///< a material that picks one of several lobes, or mix
-  bool guide = false;       ///< dull surfaces look for what the shiny model has gathered (guide.h)
+  bool lobe_choice = false;       ///< a material that picks one of several lobes
+  bool guide = false;  ///< surfaces that receive caustics look for what the model casts (guide.h)
   int material_inputs = 1;  ///< most floats any used material's inputs take
   int texture_stack = 1;    ///< most values any texture program has on its stack at once
 
   bool operator==(const Features&) const = default;
+  bool has_material(std::string_view prefix) const;
   /// Position in the list, or -1.
   static int number(const std::vector<std::string>& list, std::string_view name);
 };
 
 /// "point", "spot", "sun", "constant_infinite", "infinite": of its kernel header.
 std::string_view light_kind_name(LightKind kind);
-/// Whether next-event estimation chooses this kind of light: all but a constant sky, which
-/// scattered rays find as well.
-bool samples_light(std::string_view kind);
 bool samples_lights(const Features& features);
-/// Whether the material with this kernel prefix picks one of several lobes.
-bool has_lobes(std::string_view material);
-
-/// Whether this kind of light shines from few directions, so that what shiny things gather of it is
-/// bright and small.
-bool is_small_light(std::string_view kind);
-/// Whether surfaces of the material with this kernel prefix gather light so that dull ones can look
-/// for it, and whether they are dull.
-bool is_shiny(std::string_view material);
-bool is_dull(std::string_view material);
 
 /// False for a light or an emitter whose radiance is 0: it is treated as if it were not there. What
 /// an image or a texture holds is not looked at.
 bool shines(const Light& light);
 bool shines(const Material& material);
+
+/// By material of the scene: whether it has one of these traits (kernels/traits.h), itself or in a
+/// part.
+std::vector<bool> materials_with(const Scene& scene, unsigned traits);
 
 /// Of the objects' materials (and what these mix), all lights, and the camera's lens.
 Features features_of(const Scene& scene, const Camera& camera);

@@ -125,16 +125,17 @@ void pack_materials(const Scene& scene, const Features& features,
         material_types()[static_cast<std::size_t>(material.type)].kernel_prefix;
     Words& out = packed.materials;
     const int number = Features::number(features.materials, prefix);
-    // Mix's number follows the last material's (program_text.cc). A material that nothing shows has
-    // no number.
-    out.add(static_cast<std::uint32_t>(number >= 0 ? number
-                                                   : static_cast<int>(features.materials.size())));
+    const int chooser = Features::number(features.choosers, prefix);
+    // A material that nothing shows has no number.
+    out.add(number >= 0 ? static_cast<std::uint32_t>(number)
+                        : static_cast<std::uint32_t>(features.materials.size()) +
+                              static_cast<std::uint32_t>(std::max(chooser, 0)));
     out.add(pack_program(scene, material, features, texels, colors, packed.programs));
     for (const int child : material.children)
       out.add(static_cast<std::uint32_t>(std::max(child, 0)));
     out.add(material.emission.constant);
     out.pad_to(i * row_words + kernels::k_material_head);
-    if (number >= 0 || prefix == "mix") pack_inputs(material, out);
+    if (number >= 0 || chooser >= 0) pack_inputs(material, out);
     out.pad_to((i + 1) * row_words);
   }
 }

@@ -31,7 +31,7 @@ class Words {
   std::vector<std::uint32_t> words_;
 };
 
-/// A scene as the kernels read it (kernels/types.h).
+/// A scene as the kernels read it (kernels/scene_data.h).
 struct PackedScene {
   Bvh bvh;
   Words triangles, materials, programs, lights, tables;

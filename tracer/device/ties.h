@@ -14,7 +14,7 @@ namespace ds {
 /// Which triangles of different objects lie in one plane, as nearly as rays can tell, and overlap
 /// there: what kernels/ties.cl decides by rank.
 struct Ties {
-  /// By triangle: what k_triangle_flags holds of it (kernels/types.h), 0 for one without.
+  /// By triangle: what k_triangle_flags holds of it (kernels/scene_data.h), 0 for one without.
   std::vector<std::uint32_t> flags;
   /// Bounds of all places where triangles tie, with a margin; low above high where there are none.
   std::array<float, 3> low, high;

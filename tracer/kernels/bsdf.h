@@ -5,17 +5,21 @@
 //
 //   DS_NAME_INPUTS(INPUT)    its inputs: INPUT(slot, width, default), slot being NAME_input
 //   DS_NAME_NUMBERS(NUMBER)  its fixed numbers: NUMBER(slot, default)
+//   NAME_traits              sum of traits.h
+//   NAME_children            how many materials it chooses among; one with any has NAME_child alone
 //   NAME_derived             how many numbers it derives from the inputs and the viewer, once for
 //                            all questions; k_most_derived at most
 //   void       NAME_prepare(const real* p, Viewer viewer, real* derived)
 //   BsdfValue  NAME_evaluate(const real* p, Viewer viewer, real3 wi)
 //   BsdfSample NAME_sample(const real* p, Viewer viewer, real2 u, real2 lobe)
+//   natural    NAME_child(const real* p, mask outside, mask here, real* choice)
 //
 // `p` holds the inputs' values at the surface point, and from NAME_end on what was derived. No
 // material returns NaN or a negative number for any input in range.
 #pragma once
 
 #include "tracer/kernels/sampler.h"
+#include "tracer/kernels/traits.h"
 
 enum { k_most_derived = 16 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays against the 8-wide tree of types.h. One ray walks the tree; the boxes of a node and the
+// Rays against the 8-wide tree of scene_data.h. One ray walks the tree; the boxes of a node and the
 // triangles of a leaf are tested together in one vector.
 //
 // The nearest hit is the least (t, id) over all triangles, whatever the tree: a triangle's t
@@ -15,7 +15,7 @@
 // constants of the ray, so they cost nothing a node.
 #pragma once
 
-#include "tracer/kernels/types.h"
+#include "tracer/kernels/scene_data.h"
 
 #define k_slab_error 4.76837158203125e-7f /* 8 half-ulps */
 /// Below 4 half-ulps of the triangle's farthest corner a hit's distance is within its test's error.

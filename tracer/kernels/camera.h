@@ -3,7 +3,7 @@
 #pragma once
 
 #include "tracer/kernels/sampler.h"
-#include "tracer/kernels/types.h"
+#include "tracer/kernels/view_data.h"
 
 typedef struct {
   real3 origin, direction;  ///< world; unit direction

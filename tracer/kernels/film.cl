@@ -2,8 +2,9 @@
 // The pixels that a work-item traces, and the film's sums of their samples.
 #pragma once
 
+#include "tracer/kernels/film_data.h"
 #include "tracer/kernels/math.h"
-#include "tracer/kernels/types.h"
+#include "tracer/kernels/view_data.h"
 
 /// The pixels that a work-item's lanes are at, one a lane.
 typedef struct {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // One ray a pixel, through its centre and the pinhole: which object, how deep. Needs no material,
 // light or lens.
+#include "tracer/kernels/scene_data.h"
 #include "tracer/kernels/ties.cl"
-#include "tracer/kernels/types.h"
+#include "tracer/kernels/view_data.h"
 
 DS_FN bool is_camera_invisible(const __global float* triangles, uint id) {
   const uint flags = as_uint(triangles[id * k_triangle_words + k_triangle_flags]);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where light comes from that shiny surfaces have gathered: directions that a dull surface would
-// hardly ever sample, though much comes from there (Jensen 1995, "Importance Driven Path Tracing
-// using the Photon Map"). A grid of cells around the model holds for each up to k_guide_lobes
+// Where the light of caustics comes from: directions that the surfaces they fall on would hardly
+// ever sample, though much comes from there (Jensen 1995, "Importance Driven Path Tracing using the
+// Photon Map"). A grid of cells around the model holds for each up to k_guide_lobes
 // spheres, made of photons (render/guide.h). A share of the directions that paths leave by is
 // drawn towards these, with both ways' densities added up, so the picture's mean is the same
 // whatever the spheres are.
 #pragma once
 
+#include "tracer/kernels/guide_data.h"
 #include "tracer/kernels/math.h"
 #include "tracer/kernels/sampler.h"
-#include "tracer/kernels/types.h"
 
 /// Share of directions that are drawn towards the spheres, where there are any.
 #define k_guide_share 0.25f

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "tracer/kernels/batch.cl"
+#include "tracer/kernels/scene_data.h"
 #include "tracer/kernels/shear.h"
 #include "tracer/kernels/surface.h"
-#include "tracer/kernels/types.h"
 
 /// The rows of the triangles that were hit, lane by lane; lanes are taken apart only here and in
 /// batch.cl.

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The data layout of types.h as C++, in namespace ds::kernels.
+// What host and device share as C++, in namespace ds::kernels.
 #pragma once
 
 #include "tracer/kernels/host.h"
 
 namespace ds::DS_KERNELS {
-#include "tracer/kernels/types.h"
+#include "tracer/kernels/film_data.h"
+#include "tracer/kernels/guide_data.h"
+#include "tracer/kernels/ray_counts_data.h"
+#include "tracer/kernels/scene_data.h"
+#include "tracer/kernels/traits.h"
+#include "tracer/kernels/view_data.h"
 }  // namespace ds::DS_KERNELS

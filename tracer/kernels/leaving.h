@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a path may leave a surface point: by its material's BSDF, and where that is dull by the guide
-// as well.
+// How a path may leave a surface point: by its material's BSDF, and where that receives caustics by
+// the guide as well.
 //
 // A lobe knows the shading normal alone. Where the true one is another, a part of what it sends up
 // would go into the surface. Such directions are mirrored on the true plane: a lobe's light for a

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What every light answers. A light KIND in lights/KIND.h has
 //
-//   LightSample KIND_sample(LightTables t, uint at, real3 from, real2 u)   a way from a surface
-//   point to the light real3       KIND_escape(LightTables t, uint at, real3 direction, real* pdf)
-//                                    what a path that leaves the scene meets; only lights of
-//                                    DS_ESCAPE_LIGHTS have it
+//   KIND_traits                                   sum of traits.h
+//   LightSample KIND_sample(LightTables t, uint at, real3 from, real2 u)
+//                                                 a way from a surface point to the light
+//   real3 KIND_escape(LightTables t, uint at, real3 direction, real* pdf)
+//                                                 what a path that leaves the scene meets; only
+//                                                 lights beyond it have it
 //
 // `at` is the offset of the light's parameters in `lights`, the same in all lanes: lanes that chose
 // different lights are served light by light. Pdfs are per steradian at the surface point and do
@@ -13,7 +15,8 @@
 
 #include "tracer/kernels/math.h"
 #include "tracer/kernels/sampler.h"
-#include "tracer/kernels/types.h"
+#include "tracer/kernels/scene_data.h"
+#include "tracer/kernels/traits.h"
 
 typedef struct {
   DS_GLOBAL float* lights;

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every material and texture there is, for the host: X(SDL name, kernel prefix, PREFIX in
-// capitals). A scene's program gets a list of those it uses; this file is in none, so a new line
-// here makes no picture stale.
+// Every material, texture and light there is, for the host: X(SDL name, kernel prefix, PREFIX in
+// capitals) or, of lights, X(kernel prefix). A scene's program gets a list of those it uses; this
+// file is in none, so a new line here makes no picture stale.
 #pragma once
 
-#define DS_ALL_MATERIALS(X)      \
-  X("matte", matte, MATTE)       \
-  X("glossy2", glossy2, GLOSSY2) \
-  X("metal2", metal2, METAL2)    \
-  X("mirror", mirror, MIRROR)    \
-  X("mix", mix, MIX)             \
+/// Those with a BSDF, and those that choose among other materials.
+#define DS_SCATTERING_MATERIALS(X) \
+  X("matte", matte, MATTE)         \
+  X("glossy2", glossy2, GLOSSY2)   \
+  X("metal2", metal2, METAL2)      \
+  X("mirror", mirror, MIRROR)      \
   X("glass", glass, GLASS)
+#define DS_CHOOSING_MATERIALS(X) X("mix", mix, MIX)
+#define DS_ALL_MATERIALS(X) DS_SCATTERING_MATERIALS(X) DS_CHOOSING_MATERIALS(X)
 
 #define DS_ALL_TEXTURES(X)                            \
   X("imagemap", imagemap, IMAGEMAP)                   \
@@ -24,3 +26,12 @@
   X("hitpointcolor", hitpointcolor, HITPOINTCOLOR)    \
   X("hitpointgrey", hitpointgrey, HITPOINTGREY)       \
   X("hitpointalpha", hitpointalpha, HITPOINTALPHA)
+
+/// Those that lie beyond the scene come last.
+#define DS_ALL_LIGHTS(X) \
+  X(mesh)                \
+  X(point)               \
+  X(spot)                \
+  X(constant_infinite)   \
+  X(infinite)            \
+  X(sun)

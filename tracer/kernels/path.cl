@@ -190,8 +190,8 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
   MaterialPoint m;
   natural material =
       choose_natural(hit, bits_of(hit_word(&hits, k_triangle_material)), (natural)(0u));
-#ifdef DS_MIX_NUMBER
-  material = resolve_mix(t->materials, material, active, &s, &lobe.x, &m);
+#ifdef DS_CHOOSERS
+  material = resolve_choices(t->materials, material, active, &s, &lobe.x, &m);
 #else
   read_material(t->materials, material, active, &s, &m);
 #endif

@@ -11,7 +11,7 @@ namespace ds::DS_KERNELS {
 
 #define DS_FITS(sdl_name, prefix, PREFIX) \
   static_assert(int{prefix##_derived} <= int{k_most_derived});
-DS_ALL_MATERIALS(DS_FITS)
+DS_SCATTERING_MATERIALS(DS_FITS)
 #undef DS_FITS
 
 /// Must outlive what is done with `data`.

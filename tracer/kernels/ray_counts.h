@@ -5,7 +5,7 @@
 #pragma once
 
 #include "tracer/kernels/lanes.h"
-#include "tracer/kernels/types.h"
+#include "tracer/kernels/ray_counts_data.h"
 
 #ifdef DS_COUNT_RAYS
 

@@ -51,27 +51,27 @@ DS_FN void read_material(MaterialTables t, natural material, mask active, const 
 #endif
 }
 
-#ifdef DS_MIX_NUMBER
-/// Replaces every mix by one of its materials, the second with probability `amount`. `*choice` in
-/// [0, 1) is used up and stretched back to [0, 1), so that nested mixes and the lobe choice after
-/// them need no further number.
-DS_FN natural resolve_mix(MaterialTables t, natural material, mask active, const Surface* s,
-                          real* choice, MaterialPoint* m) {
+#ifdef DS_CHOOSERS
+/// Replaces every material that chooses among others by one of them. DS_CHOOSERS(X) is their list,
+/// numbered from DS_FIRST_CHOOSER on. `*choice` in [0, 1) is used up and stretched back to [0, 1), so
+/// that nested ones and the lobe choice after them need no further number.
+DS_FN natural resolve_choices(MaterialTables t, natural material, mask active, const Surface* s,
+                              real* choice, MaterialPoint* m) {
   read_material(t, material, active, s, m);
-  mask mixes = active & (m->type == (uint)DS_MIX_NUMBER);
-  while (any_lane(mixes)) {
-    const real amount = clamp01(m->inputs[mix_amount]);
-    const mask second = *choice < amount;
-    const real low = choose(second, (real)(0.0f), amount);
-    const real width = choose(second, amount, 1.0f - amount);
-    *choice =
-        choose(mixes, lesser((*choice - low) / greater(width, (real)(1e-10f)), (real)(0.99999994f)),
-               *choice);
-    const natural child = material * t.material_words + (uint)k_material_child +
-                          choose_natural(second, (natural)(1u), (natural)(0u));
-    material = choose_natural(mixes, load_natural(t.materials, child), material);
+  mask left = active & (m->type >= (uint)DS_FIRST_CHOOSER);
+  while (any_lane(left)) {
+    natural child = (natural)(0u);
+#  define DS_CHOOSE(name, number)                                                               \
+    {                                                                                           \
+      const mask here = left & (m->type == (uint)number);                                       \
+      if (any_lane(here))                                                                       \
+        child = choose_natural(here, name##_child(m->inputs, s->outside, here, choice), child); \
+    }
+    DS_CHOOSERS(DS_CHOOSE)
+    child += material * t.material_words + (uint)k_material_child;
+    material = choose_natural(left, load_natural(t.materials, child), material);
     read_material(t, material, active, s, m);
-    mixes = active & (m->type == (uint)DS_MIX_NUMBER);
+    left = active & (m->type >= (uint)DS_FIRST_CHOOSER);
   }
   return material;
 }

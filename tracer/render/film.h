@@ -32,7 +32,7 @@ struct PixelRect {
   std::size_t x0, y0, x1, y1;  ///< x1 and y1 lie behind the last
 };
 
-/// A film under way: what more samples can be added to. `planes` has the layout of kernels/types.h.
+/// A film under way: what more samples can be added to. `planes` has the layout of kernels/film_data.h.
 /// Tiles stand row by row, row 0 is the top.
 struct FilmSums {
   int width = 0, height = 0;

@@ -20,7 +20,7 @@ namespace ds {
 ///
 /// Numbers are little-endian. Names, in this order and each once:
 ///   width, height   in pixels
-///   planes          which of k_film_* (kernels/types.h) follow, space between; the rest, and no
+///   planes          which of k_film_* (kernels/film_data.h) follow, space between; the rest, and no
 ///                   others, are zero all over; one at least, as every sample is counted
 ///   tone_scale      of ScheduleState, a hexadecimal float, or "none"
 ///   least_bound     of ScheduleState, a hexadecimal float or "inf"

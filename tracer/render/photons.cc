@@ -3,11 +3,13 @@
 
 #include "tracer/base/error.h"
 #include "tracer/kernels/all_nodes.h"
+#include "tracer/kernels/lists.h"
 #include "tracer/kernels/prepared.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <string_view>
@@ -35,43 +37,54 @@ std::vector<float> floats(const Words& words) {
   return values;
 }
 
-kernels::BsdfSample sample_shiny(std::string_view material, const float* inputs,
-                                 kernels::Viewer viewer, real2 u, real2 lobe) {
+/// `type`: row of material_types(), of one that scatters.
+kernels::BsdfSample sample_material(int type, const float* inputs, kernels::Viewer viewer, real2 u,
+                                    real2 lobe) {
   using namespace kernels;
-  if (material == "glossy2")
-    return glossy2_sample(DS_PREPARED(glossy2, inputs, viewer), viewer, u, lobe);
-  if (material == "metal2")
-    return metal2_sample(DS_PREPARED(metal2, inputs, viewer), viewer, u, lobe);
-  if (material == "mirror") return mirror_sample(inputs, viewer, u, lobe);
-  if (material == "glass") return glass_sample(inputs, viewer, u, lobe);
+  int row = 0;
+#define DS_SAMPLE_ROW(sdl_name, prefix, PREFIX) \
+  if (type == row++) return prefix##_sample(DS_PREPARED(prefix, inputs, viewer), viewer, u, lobe);
+  DS_SCATTERING_MATERIALS(DS_SAMPLE_ROW)
   return no_sample();
+}
+
+/// The child that a chooser takes; `*choice` is used up and stretched back to [0, 1).
+natural chosen_child(std::string_view prefix, const float* inputs, kernels::mask outside,
+                     float* choice) {
+  using namespace kernels;
+#define DS_CHILD_OF(sdl_name, name, NAME) \
+  if (prefix == #name) return name##_child(inputs, outside, all_lanes(), choice);
+  DS_CHOOSING_MATERIALS(DS_CHILD_OF)
+  return 0;
 }
 
 kernels::LightSample sample_light(std::string_view kind, kernels::LightTables tables, natural at,
                                   real3 from, real2 u) {
-  if (kind == "mesh") return kernels::mesh_sample(tables, at, from, u);
-  if (kind == "point") return kernels::point_sample(tables, at, from, u);
-  if (kind == "spot") return kernels::spot_sample(tables, at, from, u);
-  if (kind == "sun") return kernels::sun_sample(tables, at, from, u);
+#define DS_SAMPLE_KIND(name) \
+  if (kind == #name) return kernels::name##_sample(tables, at, from, u);
+  DS_ALL_LIGHTS(DS_SAMPLE_KIND)
   return kernels::no_light();
 }
 
 /// What there is to know of a material here.
 struct Substance {
-  std::string_view prefix;    ///< kernel prefix; "mix" for one
+  int type;                   ///< row of material_types()
   std::vector<float> inputs;  ///< as the kernels read them
-  int children[2] = {-1, -1};
-  bool shiny = false, dull = false;  ///< itself or a part of it
+  std::array<int, kernels::k_most_children> children;
+  bool casts = false, receives = false;  ///< caustics, itself or a part of it
 };
 
 std::vector<Substance> substances(const Scene& scene) {
+  const std::vector<bool> casts = materials_with(scene, kernels::k_trait_casts_caustics);
+  const std::vector<bool> receives = materials_with(scene, kernels::k_trait_receives_caustics);
   std::vector<Substance> list;
   for (const Material& material : scene.materials) {
     const NodeType& type = material_types()[static_cast<std::size_t>(material.type)];
     Substance s;
-    s.prefix = type.kernel_prefix;
-    s.shiny = is_shiny(s.prefix);
-    s.dull = is_dull(s.prefix);
+    s.type = material.type;
+    s.casts = casts[list.size()];
+    s.receives = receives[list.size()];
+    std::copy(std::begin(material.children), std::end(material.children), s.children.begin());
     for (std::size_t i = 0; i < type.inputs.size(); ++i) {
       const bool wide = type.inputs[i].width == 3;
       const float instead = wide ? 0.5f : 0.1f;
@@ -80,19 +93,12 @@ std::vector<Substance> substances(const Scene& scene) {
       s.inputs.push_back(value.x);
       if (wide) s.inputs.insert(s.inputs.end(), {value.y, value.z});
     }
-    for (int i = 0; i < 2; ++i) {
-      s.children[i] = material.children[i];
-      if (s.children[i] < 0) continue;
-      const Substance& child = list[static_cast<std::size_t>(s.children[i])];
-      s.shiny = s.shiny || child.shiny;
-      s.dull = s.dull || child.dull;
-    }
     list.push_back(std::move(s));
   }
   return list;
 }
 
-/// A photon on its way from a shiny surface.
+/// A photon on its way from a surface that casts caustics.
 struct Flight {
   natural number;  ///< its sampler's
   natural triangle;
@@ -131,26 +137,26 @@ class PhotonTracer {
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
       const Object& object = scene.objects[o];
       if (object.id != k_model_object_id || object.material < 0 ||
-          !substances_[static_cast<std::size_t>(object.material)].shiny)
+          !substances_[static_cast<std::size_t>(object.material)].casts)
         continue;
       for (std::size_t i = 0; i < object.mesh.triangles.size(); ++i) {
         const auto number = static_cast<natural>(first[o] + i);
         sum += area(number);
-        shiny_.push_back(number);
-        shiny_until_.push_back(sum);
+        casters_.push_back(number);
+        casters_until_.push_back(sum);
       }
     }
     for (natural i = 0; i < packed.data.light_count; ++i) {
       const float kind = lights_[i * kernels::k_light_words + kernels::k_light_kind];
       const std::string& name = features.lights[std::bit_cast<std::uint32_t>(kind)];
-      if (is_small_light(name) &&
+      if (has_trait(light_type(name), kernels::k_trait_small) &&
           lights_[i * kernels::k_light_words + kernels::k_light_probability] > 0)
         sampled_.push_back({i, name});
     }
   }
 
   std::vector<Photon> photons(std::size_t most) {
-    if (shiny_.empty() || !(shiny_until_.back() > 0) || sampled_.empty()) return {};
+    if (casters_.empty() || !(casters_until_.back() > 0) || sampled_.empty()) return {};
     std::vector<Flight> flights = start(most);
     std::vector<Photon> found;
     for (int bounce = 0; bounce < k_most_bounces && !flights.empty(); ++bounce)
@@ -179,7 +185,7 @@ class PhotonTracer {
   }
   static kernels::Sampler sampler(natural number) { return kernels::sampler_for(0, 0, 0, number); }
 
-  /// On the shiny triangles, where a light shines on them.
+  /// On the triangles that cast caustics, where a light shines on them.
   std::vector<Flight> start(std::size_t most) const {
     std::vector<Flight> flights;
     std::vector<RayWords> rays;
@@ -189,9 +195,9 @@ class PhotonTracer {
       flight.number = static_cast<natural>(i);
       const kernels::Sampler s = sampler(flight.number);
       const real2 which = sample_pair(s, k_pair_start);
-      const double until = double{which.x} * shiny_until_.back();
-      const auto place = std::upper_bound(shiny_until_.begin(), shiny_until_.end() - 1, until);
-      flight.triangle = shiny_[static_cast<std::size_t>(place - shiny_until_.begin())];
+      const double until = double{which.x} * casters_until_.back();
+      const auto place = std::upper_bound(casters_until_.begin(), casters_until_.end() - 1, until);
+      flight.triangle = casters_[static_cast<std::size_t>(place - casters_until_.begin())];
       const real2 u = sample_pair(s, k_pair_place);
       const float root = std::sqrt(u.x);
       flight.b1 = root * (1 - u.y);
@@ -221,7 +227,7 @@ class PhotonTracer {
     return lit;
   }
 
-  /// Off the shiny surfaces they are on, to the next.
+  /// Off the surfaces they are on, to the next.
   std::vector<Flight> go_on(std::vector<Flight>& flights, int bounce,
                             std::vector<Photon>& found) const {
     std::vector<Flight> gone;
@@ -231,18 +237,20 @@ class PhotonTracer {
       const auto pair = static_cast<natural>(k_pair_bounces + 2 * bounce);
       real2 lobe = sample_pair(s, pair + 1);
       const Substance* material = &substance_of(flight.triangle);
-      while (material->prefix == "mix") {
-        const bool second = lobe.y < material->inputs[kernels::mix_amount];
-        material = &substances_[static_cast<std::size_t>(material->children[second ? 1 : 0])];
-        lobe.y = lobe.y < 0.5f ? 2 * lobe.y : 2 * lobe.y - 1;
+      const kernels::Surface at = surface_under(triangles_, flight);
+      for (;;) {
+        const NodeType& type = material_types()[static_cast<std::size_t>(material->type)];
+        if (type.children == 0) break;
+        const natural child =
+            chosen_child(type.kernel_prefix, material->inputs.data(), at.outside, &lobe.y);
+        material = &substances_[static_cast<std::size_t>(material->children[child])];
       }
       lobe.y = 0;
-      const kernels::Surface at = surface_under(triangles_, flight);
       const kernels::Frame frame = kernels::frame_around(at.shading);
       kernels::Viewer viewer{to_local(frame, flight.from), at.outside};
       viewer.wo.z = std::max(viewer.wo.z, 1e-3f);
-      const kernels::BsdfSample b = sample_shiny(material->prefix, material->inputs.data(), viewer,
-                                                 sample_pair(s, pair), lobe);
+      const kernels::BsdfSample b = sample_material(material->type, material->inputs.data(), viewer,
+                                                    sample_pair(s, pair), lobe);
       if (!b.valid || !(b.glossy || b.specular)) continue;
       // Mirrored on the true plane where that lets it leave on its lobe's side (leaving.h).
       const real3 sampled = unit(to_world(frame, b.wi));
@@ -264,10 +272,10 @@ class PhotonTracer {
       flight.b1 = answers[i].b1;
       flight.b2 = answers[i].b2;
       const Substance& material = substance_of(flight.triangle);
-      if (material.dull)
+      if (material.receives)
         found.push_back({plain(surface_under(triangles_, flight).position), plain(flight.source),
                          flight.power});
-      if (material.shiny) next.push_back(flight);
+      if (material.casts) next.push_back(flight);
     }
     return next;
   }
@@ -275,8 +283,8 @@ class PhotonTracer {
   const TraceRays& trace_;
   std::vector<Substance> substances_;
   std::vector<float> triangles_, lights_, tables_;
-  std::vector<natural> shiny_;
-  std::vector<double> shiny_until_;  ///< cumulative areas
+  std::vector<natural> casters_;
+  std::vector<double> casters_until_;  ///< cumulative areas
   std::vector<Sampled> sampled_;
 };
 

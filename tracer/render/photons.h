@@ -23,19 +23,19 @@ struct RayAnswer {
 };
 using TraceRays = std::function<std::vector<RayAnswer>(std::span<const RayWords>)>;
 
-/// Light that shiny surfaces of the model, seen by a light, threw on a dull surface.
+/// Light that surfaces of the model, seen by a light, threw on one that receives caustics.
 struct Photon {
   Vec3 position;  ///< world, metres: where it fell on
   Vec3 source;    ///< the surface it came from last
   float power;    ///< luminance of its flux, in a unit that all photons of a scene share
 };
 
-/// At most `most` of them: as many start on the model's shiny triangles, spread by area, towards
-/// the lights in turn; what no light reaches, a BSDF sends nowhere or no dull surface meets is
-/// lost. A photon is kept at every dull surface on its way and goes on where that is shiny, four
-/// times at most. A pure function of the scene, with the same bits on every machine. Textured
-/// inputs of the model count as 0.5, or as 0.1 where they are one number: photons say where to
-/// look, not what is there.
+/// At most `most` of them: as many start on the model's triangles that cast caustics, spread by
+/// area, towards the lights in turn; what no light reaches, a BSDF sends nowhere or no receiving
+/// surface meets is lost. A photon is kept at every receiving surface on its way and goes on where
+/// that casts too, four times at most. A pure function of the scene, with the same bits on every
+/// machine. Textured inputs of the model count as 0.5, or as 0.1 where they are one number: photons
+/// say where to look, not what is there.
 std::vector<Photon> trace_photons(const Scene& scene, const PackedScene& packed,
                                   const Features& features, std::size_t most,
                                   const TraceRays& trace);

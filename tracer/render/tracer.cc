@@ -54,7 +54,7 @@ std::size_t photons_for(const EngineSettings& engine) {
   return std::clamp(2 * pixels, std::size_t{1} << 14, std::size_t{1} << 17);
 }
 
-/// What the kernel reads of a launch (kernels/types.h).
+/// What the kernel reads of a launch (kernels/film_data.h).
 std::vector<std::uint32_t> launch_words(const FilmSums& film, std::span<const TileStep> steps,
                                         std::size_t share) {
   std::vector<std::uint32_t> words{static_cast<std::uint32_t>(share),

@@ -70,7 +70,7 @@ struct Material {
   int type = 0;                    ///< row of material_types()
   std::vector<TextureRef> inputs;  ///< in the row's order
   std::vector<float> numbers;      ///< in the row's order
-  int children[2] = {-1, -1};      ///< mix: indices of the two materials, both lower than its own
+  int children[2] = {-1, -1};      ///< what it chooses among: indices lower than its own
   bool emits = false;
   /// Emitted radiance, W/(m^2 sr), all of LuxCore's gains applied. From the front only: the side on
   /// which the triangle's corners run counter-clockwise. As LuxCore.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tracer/kernels/layout.h"
 #include "tracer/scene/fresnel_presets.h"
 #include "tracer/scene/sdl_math.h"
 #include "tracer/scene/sdl_physical.h"
@@ -96,30 +97,20 @@ void add_texture(const SdlNode& node, Texture texture) {
   reader.scene.textures.push_back(std::move(texture));
 }
 
-void read_plain(const SdlNode& node) {
-  Texture texture;
+/// Of any texture with a kernel header, what its traits ask for too.
+void read_plain(const SdlNode& node, Texture texture = {}) {
   read_header(node, texture);
+  const NodeType& type = texture_types()[static_cast<std::size_t>(texture.type)];
+  if (has_trait(type, kernels::k_trait_uv)) read_mapping_2d(node, texture);
+  if (has_trait(type, kernels::k_trait_position)) read_mapping_3d(node, texture);
+  if (has_trait(type, kernels::k_trait_colors)) node.number("dataindex");
   add_texture(node, std::move(texture));
 }
 
 void read_imagemap(const SdlNode& node) {
   Texture texture;
-  read_header(node, texture);
-  read_mapping_2d(node, texture);
   texture.image = read_image(node, node.number("gain"), ImageUse::texture);
-  add_texture(node, std::move(texture));
-}
-
-void read_hit_color(const SdlNode& node) {
-  node.number("dataindex");
-  read_plain(node);
-}
-
-void read_solid(const SdlNode& node) {
-  Texture texture;
-  read_header(node, texture);
-  read_mapping_3d(node, texture);
-  add_texture(node, std::move(texture));
+  read_plain(node, std::move(texture));
 }
 
 void read_fresnel_color(const SdlNode& node) {
@@ -135,42 +126,48 @@ void read_fresnel_const(const SdlNode& node) {
 }
 
 std::vector<SdlParameter> imagemap_parameters() {
-  return concatenated({{{"gain", SdlType::number, "1", "factor on the image"}},
-                       image_parameters(),
-                       {{"mapping.type",
-                         SdlType::choice,
-                         "uvmapping2d",
-                         "how uv coordinates become the image's",
-                         {},
-                         {"uvmapping2d"}},
-                        {"mapping.uvindex",
-                         SdlType::number,
-                         "0",
-                         "there is one set of uv",
-                         {.least = 0, .most = 0}},
-                        {"mapping.rotation", SdlType::number, "0", "degrees, after the scale"},
-                        {"mapping.uvscale", SdlType::pair, "1 1", "factors on u and v"},
-                        {"mapping.uvdelta", SdlType::pair, "0 0", "added last"}}});
+  return concatenated(
+      {{{"gain", SdlType::number, "1", "factor on the image"}}, image_parameters()});
 }
 
-std::vector<SdlParameter> solid_parameters() {
-  return {{"mapping.type",
-           SdlType::choice,
-           "",
-           "the world's coordinates are the texture's; must be given, since LuxCore's default "
-           "uvmapping3d is not supported",
-           {},
-           {"globalmapping3d"}},
-          {"mapping.transformation", SdlType::matrix, "1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1",
-           "applied to the world's point: a scale of 4 makes a pattern four times as fine"}};
+/// What a texture of these traits has beyond its header.
+std::vector<SdlParameter> trait_parameters(const NodeType& type) {
+  std::vector<SdlParameter> list;
+  if (has_trait(type, kernels::k_trait_uv))
+    list = {{"mapping.type",
+             SdlType::choice,
+             "uvmapping2d",
+             "how uv coordinates become the image's",
+             {},
+             {"uvmapping2d"}},
+            {"mapping.uvindex",
+             SdlType::number,
+             "0",
+             "there is one set of uv",
+             {.least = 0, .most = 0}},
+            {"mapping.rotation", SdlType::number, "0", "degrees, after the scale"},
+            {"mapping.uvscale", SdlType::pair, "1 1", "factors on u and v"},
+            {"mapping.uvdelta", SdlType::pair, "0 0", "added last"}};
+  if (has_trait(type, kernels::k_trait_position))
+    list = {{"mapping.type",
+             SdlType::choice,
+             "",
+             "the world's coordinates are the texture's; must be given, since LuxCore's default "
+             "uvmapping3d is not supported",
+             {},
+             {"globalmapping3d"}},
+            {"mapping.transformation", SdlType::matrix, "1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1",
+             "applied to the world's point: a scale of 4 makes a pattern four times as fine"}};
+  if (has_trait(type, kernels::k_trait_colors))
+    list = {{"dataindex",
+             SdlType::number,
+             "0",
+             "there is one set of colours",
+             {.least = 0, .most = 0}}};
+  return list;
 }
 
-std::vector<SdlParameter> color_parameters() {
-  return {
-      {"dataindex", SdlType::number, "0", "there is one set of colours", {.least = 0, .most = 0}}};
-}
-
-/// How a texture is read that is no plain kernel header, and what it has beyond one.
+/// How a texture is read that needs more than its kernel header and traits.
 struct TextureReader {
   SdlTypeRow row;  ///< the help of those with a kernel header is there
   void (*read)(const SdlNode&);
@@ -180,12 +177,6 @@ const std::vector<TextureReader>& readers() {
   constexpr NumberRange k_not_negative{.least = 0};
   static const std::vector<TextureReader> table{
       {{"imagemap", "", imagemap_parameters()}, read_imagemap},
-      {{"checkerboard3d", "", solid_parameters()}, read_solid},
-      {{"marble", "", solid_parameters()}, read_solid},
-      {{"fbm", "", solid_parameters()}, read_solid},
-      {{"hitpointcolor", "", color_parameters()}, read_hit_color},
-      {{"hitpointgrey", "", color_parameters()}, read_hit_color},
-      {{"hitpointalpha", "", color_parameters()}, read_hit_color},
       {{"constfloat1", "A number.", {{"value", SdlType::scalar_input, "1", "a constant"}}},
        read_constant},
       {{"constfloat3", "A colour.", {{"value", SdlType::color_input, "1", "a constant"}}},
@@ -212,7 +203,10 @@ void read_texture(SdlNode node) {
   const auto reader = std::find_if(readers().begin(), readers().end(), [&](const TextureReader& r) {
     return r.row.name == node.type();
   });
-  (reader == readers().end() ? read_plain : reader->read)(node);
+  if (reader == readers().end())
+    read_plain(node);
+  else
+    reader->read(node);
 }
 
 }  // namespace
@@ -238,6 +232,9 @@ const SdlSection& texture_section() {
       else
         row->parameters = concatenated({std::move(row->parameters), reader.row.parameters});
     }
+    for (std::size_t i = 0; i < texture_types().size(); ++i)
+      made.types[i].parameters =
+          concatenated({std::move(made.types[i].parameters), trait_parameters(texture_types()[i])});
     return made;
   }();
   return section;

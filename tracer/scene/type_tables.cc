@@ -34,19 +34,30 @@ std::span<const Row> named_rows(std::array<Row, Size>& rows, std::string_view pr
   return std::span<const Row>(rows).first(Size - 1);
 }
 
-#define DS_NODE_ROW(sdl_name, prefix, PREFIX)                           \
-  NodeType{sdl_name, #prefix, named_rows(prefix##_input_rows, #prefix), \
+#define DS_NODE_ROW(sdl_name, prefix, PREFIX, children) \
+  NodeType{sdl_name,                                    \
+           #prefix,                                     \
+           unsigned{kernels::prefix##_traits},          \
+           children,                                    \
+           named_rows(prefix##_input_rows, #prefix),    \
            named_rows(prefix##_number_rows, #prefix)},
+#define DS_MATERIAL_ROW(sdl_name, prefix, PREFIX) \
+  DS_NODE_ROW(sdl_name, prefix, PREFIX, kernels::prefix##_children)
+#define DS_TEXTURE_ROW(sdl_name, prefix, PREFIX) DS_NODE_ROW(sdl_name, prefix, PREFIX, 0)
+#define DS_LIGHT_ROW(prefix) LightType{#prefix, unsigned{kernels::prefix##_traits}},
+#define DS_CHILDREN_FIT(sdl_name, prefix, PREFIX) \
+  static_assert(int{kernels::prefix##_children} <= int{kernels::k_most_children});
+DS_ALL_MATERIALS(DS_CHILDREN_FIT)
 
 std::span<const NodeType> make_material_types() {
   DS_ALL_MATERIALS(DS_NODE_LISTS)
-  static const std::array rows = {DS_ALL_MATERIALS(DS_NODE_ROW)};
+  static const std::array rows = {DS_ALL_MATERIALS(DS_MATERIAL_ROW)};
   return rows;
 }
 
 std::span<const NodeType> make_texture_types() {
   DS_ALL_TEXTURES(DS_NODE_LISTS)
-  static const std::array rows = {DS_ALL_TEXTURES(DS_NODE_ROW)};
+  static const std::array rows = {DS_ALL_TEXTURES(DS_TEXTURE_ROW)};
   return rows;
 }
 
@@ -106,10 +117,10 @@ std::string header_comment(std::string_view folder, const NodeType& type) {
 }
 
 bool reads_uvs(const NodeType& texture) {
-  return texture.name == "imagemap";
+  return has_trait(texture, kernels::k_trait_uv);
 }
 bool reads_colors(const NodeType& texture) {
-  return texture.name.starts_with("hitpoint");
+  return has_trait(texture, kernels::k_trait_colors);
 }
 
 std::span<const NodeType> material_types() {
@@ -120,6 +131,19 @@ std::span<const NodeType> material_types() {
 std::span<const NodeType> texture_types() {
   static const std::span<const NodeType> rows = make_texture_types();
   return rows;
+}
+
+std::span<const LightType> light_types() {
+  static constexpr std::array rows = {DS_ALL_LIGHTS(DS_LIGHT_ROW)};
+  return rows;
+}
+
+const LightType& light_type(std::string_view prefix) {
+  const auto row =
+      std::find_if(light_types().begin(), light_types().end(),
+                   [&](const LightType& type) { return type.kernel_prefix == prefix; });
+  DS_ASSERT(row != light_types().end());
+  return *row;
 }
 
 int find_type(std::span<const NodeType> types, std::string_view name) {

@@ -37,10 +37,23 @@ struct NumberType {
 struct NodeType {
   std::string_view name;           ///< the SDL's `type`
   std::string_view kernel_prefix;  ///< of its kernel header and functions
+  unsigned traits;                 ///< sum of tracer/kernels/traits.h
+  int children;                    ///< materials it chooses among; k_most_children at most
   std::span<const InputType> inputs;
   std::span<const NumberType> numbers;
 };
 
+/// One kind of light: of tracer/kernels/lights/PREFIX.h.
+struct LightType {
+  std::string_view kernel_prefix;
+  unsigned traits;
+};
+
+/// Whether a type has one of these traits.
+template <typename Type>
+bool has_trait(const Type& type, unsigned traits) {
+  return (type.traits & traits) != 0;
+}
 /// Whether a texture of this type reads uv, and whether it reads the mesh's colours.
 bool reads_uvs(const NodeType& texture);
 bool reads_colors(const NodeType& texture);
@@ -48,6 +61,10 @@ bool reads_colors(const NodeType& texture);
 /// In the order of tracer/kernels/lists.h; Material::type and Texture::type index them.
 std::span<const NodeType> material_types();
 std::span<const NodeType> texture_types();
+/// In that order too; those beyond the scene come last.
+std::span<const LightType> light_types();
+/// The row of a kernel prefix that there is.
+const LightType& light_type(std::string_view prefix);
 
 /// What the kernel header of a type says of it first: the paragraph at its top, on one line.
 /// `folder` is "materials" or "textures".

@@ -44,8 +44,8 @@ TEST(Effects, AreSimulatedWhereTheProgramHoldsTheirCode) {
     const std::string text = program_tokens(path_program_text(features_of(p.scene, p.camera)));
     const auto has = [&](const std::string& code) { return text.find(code) != text.npos; };
     for (const NodeType& type : material_types()) {
-      const std::string code = type.name == "mix" ? "#define DS_MIX_NUMBER "
-                                                  : std::string(type.kernel_prefix) + "_sample(";
+      const std::string code =
+          std::string(type.kernel_prefix) + (type.children > 0 ? "_child(" : "_sample(");
       EXPECT_EQ(find(effects, "material", type.name).simulated, has(code)) << p.name << type.name;
     }
     for (const NodeType& type : texture_types())

@@ -221,6 +221,37 @@ TEST_P(Bsdf, IsReciprocal) {
   }
 }
 
+// What the host takes from a header's traits is what its functions do.
+TEST_P(Bsdf, ChoosesByANumberWhereItHasLobes) {
+  bool depends = false;
+  for (int i = 0; i < 2000; ++i) {
+    const std::vector<float> p = materials::random_inputs(GetParam(), random_);
+    const Viewer v = materials::viewer(0.01 + 0.98 * double{number()}, number() < 0.5f);
+    const real2 u = {number(), number()};
+    const BsdfSample a = GetParam().sample(p.data(), v, u, {number(), number()});
+    const BsdfSample b = GetParam().sample(p.data(), v, u, {number(), number()});
+    depends = depends || a.wi.x != b.wi.x || a.wi.z != b.wi.z || a.glossy != b.glossy;
+  }
+  EXPECT_EQ(depends, has_trait(*GetParam().type, k_trait_lobes));
+}
+
+TEST_P(Bsdf, CastsAndReceivesCausticsByItsLobes) {
+  if (GetParam().type->children > 0) return;  // its parts do
+  bool gathers = false, spreads = false;
+  for (int i = 0; i < 2000; ++i) {
+    const std::vector<float> p = materials::random_inputs(GetParam(), random_);
+    const BsdfSample s =
+        sample(p, materials::viewer(0.01 + 0.98 * double{number()}, number() < 0.5f));
+    if (!s.valid) continue;
+    (s.specular || s.glossy ? gathers : spreads) = true;
+  }
+  EXPECT_EQ(gathers, has_trait(*GetParam().type, k_trait_casts_caustics));
+  // metal2's light after several reflections among its facets is spread, but is little.
+  if (GetParam().name != "metal2") {
+    EXPECT_EQ(spreads, has_trait(*GetParam().type, k_trait_receives_caustics));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Every, Bsdf, testing::ValuesIn(materials::all()), test_name);
 
 TEST(Fresnel, Dielectric) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mix as one BSDF of one lane, by the kernels' own resolve_mix: metal2 with a mix of matte and
+// A mix as one BSDF of one lane, by the kernels' own resolve_choices: metal2 with a mix of matte and
 // mirror. In namespace ds::DS_KERNELS.
 #pragma once
 
@@ -13,7 +13,8 @@
 
 // The program's own numbers of materials, as device/program_text.cc writes them.
 #define DS_MATERIALS(X) X(matte, 0) X(metal2, 1) X(mirror, 2)
-#define DS_MIX_NUMBER 3
+#define DS_CHOOSERS(X) X(mix, 3)
+#define DS_FIRST_CHOOSER 3
 #define DS_MATERIAL_INPUTS 8
 
 #if defined(__GNUC__)  // as all_nodes.h
@@ -33,6 +34,10 @@ namespace ds::DS_KERNELS {
 
 namespace ds::DS_KERNELS {
 
+/// As one BSDF it derives nothing.
+enum { mix_derived = 0 };
+inline void mix_prepare(const real*, Viewer, real*) {}
+
 /// Its inputs in the order that the functions below take them.
 inline const NodeType& mix_type() {
   static constexpr std::array inputs = {
@@ -40,7 +45,7 @@ inline const NodeType& mix_type() {
       InputType{"n", 3, 0.5f},          InputType{"k", 3, 0.5f},
       InputType{"uroughness", 1, 0.1f}, InputType{"vroughness", 1, 0.1f},
       InputType{"kd", 3, 0.75f},        InputType{"kr", 3, 1.0f}};
-  static const NodeType type{"mix", "mix", inputs, {}};
+  static const NodeType type{"mix", "mix", mix_traits, mix_children, inputs, {}};
   return type;
 }
 
@@ -58,8 +63,8 @@ class MixOnHost {
   MaterialPoint resolve(real* choice, Viewer viewer) {
     MaterialPoint m;
     Surface s;
-    resolve_mix({words_.data(), nullptr, nullptr, k_row}, natural{k_outer}, all_lanes(), &s, choice,
-                &m);
+    resolve_choices({words_.data(), nullptr, nullptr, k_row}, natural{k_outer}, all_lanes(), &s,
+                    choice, &m);
     prepare_material(&m, viewer);
     return m;
   }

@@ -365,6 +365,48 @@ float texel(ImageWrap wrap, ImageFilter filter, float u, float v) {
       .x;
 }
 
+// What the host takes from a header's traits is what its function reads.
+TEST(Textures, ReadWhatTheirTraitsSay) {
+  Image image;
+  image.width = image.height = 2;
+  image.rgb = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  for (const NodeType& type : texture_types()) {
+    const auto value = [&](SurfacePoint where) {
+      return value_of(
+          [&](Scene& scene) {
+            scene.images.push_back(image);
+            const int index = pictures::add_texture(scene, type.name, {});
+            float other = 1;
+            for (TextureRef& input : scene.textures.back().inputs) {
+              input = {{other, other, other}, -1};
+              other *= 0.5f;
+            }
+            return index;
+          },
+          where);
+    };
+    const auto changes = [&](const SurfacePoint& other, const SurfacePoint& from) {
+      const real3 a = value(from), b = value(other);
+      return a.x != b.x || a.y != b.y || a.z != b.z;
+    };
+    const SurfacePoint from{vec(0.3f, 0.2f, 0.4f), 0.1f, 0.2f, 0.25f, 0.625f, 1};
+    SurfacePoint other = from;
+    bool by_position = false;
+    for (int i = 1; i < 50; ++i) {
+      other.position.x = from.position.x + 0.37f * static_cast<float>(i);
+      by_position = by_position || changes(other, from);
+    }
+    EXPECT_EQ(by_position, has_trait(type, k_trait_position)) << type.name;
+    other = from;
+    other.u = 0.4f;
+    other.v = 0.9f;
+    EXPECT_EQ(changes(other, from), has_trait(type, k_trait_uv)) << type.name;
+    other = from;
+    other.colors = 0;
+    EXPECT_EQ(changes(other, from), has_trait(type, k_trait_colors)) << type.name;
+  }
+}
+
 TEST(Imagemap, TexelsStandWhereTheSceneSays) {
   // scene.h: (0, 0) is the top left corner; texel (i, j) has its centre at ((i + 0.5) / width, (j +
   // 0.5) / height).

@@ -27,6 +27,10 @@
   NUMBER(glossy2_multibounce, 0.0f) \
   NUMBER(glossy2_doublesided, 0.0f)
 enum { DS_GLOSSY2_INPUTS(DS_SLOT) glossy2_end };
+enum {
+  glossy2_traits = k_trait_lobes | k_trait_casts_caustics | k_trait_receives_caustics,
+  glossy2_children = 0
+};
 /// What is derived: the parts of a Coat, then what the coat does to light for the viewer.
 enum {
   glossy2_alpha,
