@@ -177,7 +177,7 @@ class ShardsTest(TinyCase):
                                       f"got {value}\n")
             self.assertEqual(run.out, "")
         for command in (["build", self.recipe, "--shard", "-1/2"], ["build", self.recipe, "--shard"],
-                        ["build", self.recipe, "--shard="], ["plan", self.recipe, "--shard", "1/2"]):
+                        ["build", self.recipe, "--shard="], ["verify", self.recipe, "--shard", "1/2"]):
             run = self.run_it(*command, "-o", self.out)
             self.assertEqual(run.code, 2, (command, str(run)))
             self.assertEqual(len(run.err.splitlines()), 1, run)
