@@ -86,11 +86,11 @@ class Writer {
   void new_line() {
     if (indent_ == 0) return;
     text_ += '\n';
-    text_.append(static_cast<std::size_t>(indent_ * depth_), ' ');
+    text_.append(static_cast<std::size_t>(indent_) * depth_, ' ');
   }
 
   int indent_;
-  int depth_ = 0;
+  std::size_t depth_ = 0;
   std::string text_;
 };
 

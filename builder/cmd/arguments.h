@@ -86,6 +86,6 @@ std::vector<std::string_view> help_topics();
 std::string help_of(std::string_view verb);
 
 /// Runs the verb that the command line names. Returns the exit code; throws Error.
-int run_command_line(std::span<const char* const> arguments);
+int run_command_line(std::span<const char* const> words);
 
 }  // namespace ds

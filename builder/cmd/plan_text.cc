@@ -96,7 +96,7 @@ void print_plan(Stream to, const Plan& plan, bool all_names) {
     if (image.stale()) stale.add(common_reason(image), id, line_of(image));
     if (!image.error) continue;
     const std::string why = fmt::format("cannot be made: {}", image.error->what());
-    failed.add(why, id, id + ": " + why);
+    failed.add(why, id, fmt::format("{}: {}", id, why));
   }
   std::set<std::string> refused;
   for (const PlannedImage& image : plan.images)
@@ -106,7 +106,7 @@ void print_plan(Stream to, const Plan& plan, bool all_names) {
   for (const std::string& path : plan.to_remove) {
     const std::string what = refused.contains(path) ? "remove: its picture is refused"
                                                     : "remove: no image of the recipe has it";
-    removed.add(what, path, path + ": " + what);
+    removed.add(what, path, fmt::format("{}: {}", path, what));
   }
   for (const Groups* groups : {&stale, &removed, &failed})
     groups->print(to, all_names);

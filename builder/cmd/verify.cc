@@ -48,7 +48,7 @@ std::string why_alone(const Arguments& arguments) {
 /// Compares a folder with what made it, as far as that is there: for its files, the folder is
 /// enough. Returns why it was not compared; empty where it was.
 std::string verify_folder(VerifyResult& result, const Arguments& arguments) {
-  const std::string why = why_alone(arguments);
+  std::string why = why_alone(arguments);
   if (arguments.rerender > 0) {
     if (!why.empty())
       fail(ErrorKind::usage, "{}: --rerender needs the recipe: {}", arguments.target, why);
@@ -84,7 +84,7 @@ void print_findings(const VerifyResult& result, bool all) {
     if (all)
       say(Stream::result, "{}\n", line);
     else
-      groups.add(cause_of(finding), kind + ": " + finding.path, line);
+      groups.add(cause_of(finding), fmt::format("{}: {}", kind, finding.path), line);
   }
   groups.print(Stream::result, false);
   say(Stream::result, "{} images, {} files: ", result.images, result.files);

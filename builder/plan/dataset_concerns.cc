@@ -61,14 +61,15 @@ void look_at_splits(std::vector<Concern>& concerns, const Recipe& recipe,
                     const std::vector<ImageFacts>& images) {
   const bool by_chance = recipe.split_test_fraction.has_value();
   Concern& empty = concern(concerns, "splits_empty");
-  for (const auto& [split, wanted] : {std::pair{"train", by_chance || recipe.train_classes},
-                                      std::pair{"test", by_chance || recipe.test_classes}}) {
-    if (!wanted) continue;
+  const auto look_at = [&](const char* split, bool wanted) {
+    if (!wanted) return;
     ++empty.of;
     if (std::none_of(images.begin(), images.end(),
                      [&](const ImageFacts& image) { return image.split == split; }))
       add_example(empty, split);
-  }
+  };
+  look_at("train", by_chance || recipe.train_classes);
+  look_at("test", by_chance || recipe.test_classes);
 }
 
 PixelCounts count_file(const std::filesystem::path& file, const std::string& kind) {

@@ -373,9 +373,9 @@ void KeyMaker::State::add_outputs(ImageKeys& keys, Environment& environment,
     const std::string_view kind = output_kinds_[i];
     const bool of_film = kind == "image";
     TextForm& form = of_film ? environment.picture : kind == "mask" ? mask_ : depth_;
-    const Hash128 key = form.hash({of_film ? render : geometry});
+    const Hash128 key = form.hash({(of_film ? render : geometry).text()});
     texts[i] = HexText(key);
-    values[i] = texts[i];
+    values[i] = texts[i].text();
     keys.outputs.push_back({output_kinds_[i], output_path(id, output_kinds_[i]), key});
   }
   keys.files = files_.hash(std::span(values).first(output_kinds_.size()));
@@ -393,10 +393,10 @@ ImageKeys KeyMaker::State::keys(const ImageSpec& image) {
                 kind.engine.hash({view_of_digits(fmt::format_int(image.engine.seed))}),
                 environment.files_part};
   const auto& parts = keys.parts;
-  const HexText model(parts[0]);
-  keys.render = five_.hash(
-      {model, HexText(parts[1]), HexText(parts[2]), HexText(parts[3]), HexText(parts[4])});
-  keys.geometry = view.geometry.hash({HexText(model_part(image, {}))});
+  keys.render =
+      five_.hash({HexText(parts[0]).text(), HexText(parts[1]).text(), HexText(parts[2]).text(),
+                  HexText(parts[3]).text(), HexText(parts[4]).text()});
+  keys.geometry = view.geometry.hash({HexText(model_part(image, {})).text()});
   add_outputs(keys, environment, image.id);
   return keys;
 }
@@ -407,8 +407,9 @@ Hash128 KeyMaker::State::kept_key(const ImageSpec& image, const ImageKeys& keys)
     kind.kept = TextForm(canonical_kept_engine(kind.settings, program(image)), {"seed"});
   const Hash128 engine = kind.kept->hash({view_of_digits(fmt::format_int(image.engine.seed))});
   const auto& parts = keys.parts;
-  return film_sums_.hash({HexText(parts[0]), HexText(parts[1]), HexText(parts[2]),
-                          HexText(parts[3]), HexText(engine)});
+  return film_sums_.hash({HexText(parts[0]).text(), HexText(parts[1]).text(),
+                          HexText(parts[2]).text(), HexText(parts[3]).text(),
+                          HexText(engine).text()});
 }
 
 /// The other texts were added when the first image of their kind was met, but for a program that was

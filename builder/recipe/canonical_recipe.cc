@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/recipe/canonical_recipe.h"
 
+#include <fmt/format.h>
+
 #include <optional>
 
 namespace ds {
@@ -61,7 +63,7 @@ std::vector<std::pair<std::string, std::string>> canonical_settings(const Settin
 std::string canonical_recipe(const Recipe& recipe) {
   std::string text;
   for (const auto& [key, value] : recipe.settings)
-    text += key + " = " + value + "\n";
+    text += fmt::format("{} = {}\n", key, value);
   return text;
 }
 

@@ -97,7 +97,7 @@ std::optional<fs::path> class_file(Settings& settings, const std::string& key) {
     }
     text.replace(at, k_models_dir.size(), settings.resolve(*dir).string());
   }
-  const fs::path file = settings.resolve(*value, text);
+  fs::path file = settings.resolve(*value, text);
   std::error_code error;
   if (fs::is_regular_file(file, error)) return file;
   const RecipeValue* dir = settings.find("models.dir");
@@ -237,7 +237,7 @@ void read_assignments(Settings& settings, Recipe& recipe) {
 
 std::string name_from_file(const Settings& settings, const fs::path& file) {
   if (settings.find("dataset.name") != nullptr) return settings.text("dataset.name");
-  const std::string stem = file.stem().string();
+  std::string stem = file.stem().string();
   const KeySpec* key = find_key("dataset.name");
   if (!settings.given("dataset.name") && !fits(*key, parse_value(to_toml(stem)))) {
     settings.complain("dataset.name",

@@ -3,6 +3,8 @@
 
 #include "tracer/base/nearest.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <tuple>
 #include <utility>
@@ -127,7 +129,7 @@ Settings::Settings(const fs::path& file, RecipeValue::Table tree, Diagnostics& d
 void Settings::collect(const std::string& prefix, RecipeValue::Table& table,
                        std::vector<std::pair<std::string, RecipeValue>>& found) {
   for (auto& [part, value] : table) {
-    std::string name = prefix.empty() ? part : prefix + "." + part;
+    std::string name = prefix.empty() ? part : fmt::format("{}.{}", prefix, part);
     if (prefix.empty() && value.table() != nullptr && !is_section(name)) {
       const std::string meant = section_meant(name, value);
       // An empty table stands for the section in what is to be checked, to be reported in its place.

@@ -73,8 +73,8 @@ void fit_linear(Axis& axis) {
   const double last = std::ceil(axis.high / step - 1e-9);
   axis.low = first * step;
   axis.high = last * step;
-  for (double i = first; i <= last; ++i)
-    axis.ticks.push_back({i * step, short_number(i * step)});
+  for (int i = 0; first + i <= last; ++i)
+    axis.ticks.push_back({(first + i) * step, short_number((first + i) * step)});
 }
 
 }  // namespace

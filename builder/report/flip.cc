@@ -165,9 +165,9 @@ std::vector<double> features(const Plane& y, Feature feature) {
   const int radius = static_cast<int>(std::ceil(3 * sigma));
   const Taps gauss = gaussian_taps(sigma, radius);
   Taps along = gauss;
+  double* const middle = along.data() + radius;
   for (int x = -radius; x <= radius; ++x)
-    along[static_cast<std::size_t>(x + radius)] *=
-        feature == Feature::edge ? -x : x * x / (sigma * sigma) - 1;
+    middle[x] *= feature == Feature::edge ? -x : x * x / (sigma * sigma) - 1;
   along = balanced(along);
   const Plane across = filtered(y, along, normalised(gauss));
   const Plane down = filtered(y, normalised(gauss), along);

@@ -15,19 +15,19 @@ using Group = std::vector<const PairAccuracy*>;
 
 /// How a metric is shown.
 struct Display {
-  Metric metric;
   const char* title;
   const char* label;
-  Scale scale;
   double factor;  ///< percent from shares
+  Metric metric;
+  Scale scale;
 };
 constexpr Display k_displays[] = {
-    {Metric::error, "Error", "relative RMS error (%)", Scale::log10, 100},
-    {Metric::rel_mse, "relMSE", "relMSE", Scale::log10, 1},
-    {Metric::rel_mse_trimmed, "Trimmed relMSE", "relMSE of the best 99.9 %", Scale::log10, 1},
-    {Metric::psnr_db, "PSNR", "PSNR (dB)", Scale::linear, 1},
-    {Metric::ssim, "SSIM", "SSIM", Scale::linear, 1},
-    {Metric::flip, "FLIP", "mean FLIP", Scale::log10, 1},
+    {"Error", "relative RMS error (%)", 100, Metric::error, Scale::log10},
+    {"relMSE", "relMSE", 1, Metric::rel_mse, Scale::log10},
+    {"Trimmed relMSE", "relMSE of the best 99.9 %", 1, Metric::rel_mse_trimmed, Scale::log10},
+    {"PSNR", "PSNR (dB)", 1, Metric::psnr_db, Scale::linear},
+    {"SSIM", "SSIM", 1, Metric::ssim, Scale::linear},
+    {"FLIP", "mean FLIP", 1, Metric::flip, Scale::log10},
 };
 
 Interval scaled(const Interval& i, double factor) {

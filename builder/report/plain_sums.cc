@@ -49,7 +49,8 @@ void PlainSums::add(const FilmSums& film) {
 
 double PlainSums::relative_error() const {
   double squares = 0, luminance = 0;
-  for (std::size_t tile = 0; tile < totals_.size(); tile += 12 * kernels::k_tile_pixels)
+  for (std::size_t tile = 0; tile < totals_.size();
+       tile += std::size_t{12} * kernels::k_tile_pixels)
     for (std::size_t k = 0; k < kernels::k_tile_pixels; ++k) {
       const double whole = pixel_luminance(totals_, tile + k);
       const double off = pixel_luminance(plain_, tile + k) - whole;

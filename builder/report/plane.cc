@@ -31,21 +31,22 @@ Taps normalised(Taps taps) {
 Plane filtered(const Plane& plane, const Taps& across, const Taps& down) {
   Plane half(plane.width, plane.height);
   const int rx = radius_of(across);
+  const double* const tap_x = across.data() + rx;
   for (int y = 0; y < plane.height; ++y)
     for (int x = 0; x < plane.width; ++x) {
       double sum = 0;
       for (int i = -rx; i <= rx; ++i)
-        sum += across[static_cast<std::size_t>(i + rx)] *
-               plane.at(std::clamp(x + i, 0, plane.width - 1), y);
+        sum += tap_x[i] * plane.at(std::clamp(x + i, 0, plane.width - 1), y);
       half.at(x, y) = sum;
     }
   Plane whole(plane.width, plane.height);
   const int ry = radius_of(down);
+  const double* const tap_y = down.data() + ry;
   for (int i = -ry; i <= ry; ++i)
     for (int y = 0; y < plane.height; ++y) {
       const int from = std::clamp(y + i, 0, plane.height - 1);
       for (int x = 0; x < plane.width; ++x)
-        whole.at(x, y) += down[static_cast<std::size_t>(i + ry)] * half.at(x, from);
+        whole.at(x, y) += tap_y[i] * half.at(x, from);
     }
   return whole;
 }

@@ -131,10 +131,10 @@ bool belongs_to(const Pointer& pointer, const fs::path& folder, const fs::path& 
 /// dataset it is about.
 fs::path default_folder(const Recipe& recipe) {
   const fs::path name = fs::path("out") / recipe.name;
-  const fs::path here = normal(name);
+  fs::path here = normal(name);
   for (const fs::path& start : {fs::current_path(), recipe.file.parent_path()})
     for (fs::path above = start;; above = above.parent_path()) {
-      const fs::path folder = normal(above / name);
+      fs::path folder = normal(above / name);
       const std::optional<Pointer> pointer = read_pointer(folder, true);
       if (pointer && !pointer->recipe.empty() && belongs_to(*pointer, folder, recipe.file))
         return folder;

@@ -86,7 +86,7 @@ HexText::HexText(Hash128 hash) {
 }
 
 std::string Hash128::hex() const {
-  return std::string(std::string_view(HexText(*this)));
+  return std::string(HexText(*this).text());
 }
 
 std::optional<Hash128> Hash128::from_hex(std::string_view text) {

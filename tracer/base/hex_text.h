@@ -14,7 +14,7 @@ class HexText {
  public:
   HexText() : HexText(Hash128{}) {}
   explicit HexText(Hash128 hash);
-  operator std::string_view() const { return {digits_.data(), digits_.size()}; }
+  std::string_view text() const { return {digits_.data(), digits_.size()}; }
 
  private:
   std::array<char, 32> digits_;

@@ -62,7 +62,7 @@ fs::path make_process_folder(const fs::path& parent) {
   make_folders(parent);
   remove_ended(parent);
   for (int n = 0; n < 1000; ++n) {
-    const fs::path folder = parent / fmt::format("{}-{}", ::getpid(), n);
+    fs::path folder = parent / fmt::format("{}-{}", ::getpid(), n);
     if (!take_lock(folder.string() + ".lock")) continue;
     make_folders(folder);
     return folder;

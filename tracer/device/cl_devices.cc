@@ -60,7 +60,7 @@ std::vector<cl_platform_id> platforms() {
 std::vector<FoundDevice> find_devices() {
   prepare_pocl_environment();
   std::vector<FoundDevice> found;
-  for (const cl_platform_id platform : platforms()) {
+  for (cl_platform_id platform : platforms()) {
     cl_uint count = 0;
     const cl_int code = clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &count);
     if (code == CL_DEVICE_NOT_FOUND || (code == CL_SUCCESS && count == 0)) continue;
@@ -68,7 +68,7 @@ std::vector<FoundDevice> find_devices() {
     std::vector<cl_device_id> ids(count);
     check_cl(clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, count, ids.data(), nullptr),
              "clGetDeviceIDs");
-    for (const cl_device_id id : ids)
+    for (cl_device_id id : ids)
       found.push_back({id, describe(platform, id)});
   }
   return found;

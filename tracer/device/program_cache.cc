@@ -43,7 +43,7 @@ bool is_usable(const fs::path& folder) {
 /// A name that anybody can guess, in a folder where anybody can make files: taken only if it is
 /// ours alone.
 fs::path fallback_cache_folder() {
-  const fs::path folder = fs::temp_directory_path() / fmt::format("dsbuild-{}", ::geteuid());
+  fs::path folder = fs::temp_directory_path() / fmt::format("dsbuild-{}", ::geteuid());
   if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
     fail(ErrorKind::io,
          "{}: cannot make a cache folder: {}; set XDG_CACHE_HOME to a folder that can be written",

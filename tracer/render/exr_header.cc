@@ -378,7 +378,8 @@ class Parser {
   static std::uint64_t unrolled(std::span<const std::byte> data) {
     std::uint64_t size = 0;
     for (std::size_t at = 0; at + 1 < data.size();) {
-      const int run = static_cast<signed char>(data[at]);
+      const int byte = std::to_integer<int>(data[at]);
+      const int run = byte < 128 ? byte : byte - 256;
       size += static_cast<std::uint64_t>(run < 0 ? -run : run + 1);
       at += run < 0 ? 1 + static_cast<std::size_t>(-run) : 2;
     }

@@ -139,7 +139,7 @@ void add_lobes(std::span<Source> sources, double radius, std::vector<std::uint32
   for (const Source& s : sources)
     all += s.weight;
   const std::size_t begin = words.size();
-  words.resize(begin + kernels::k_guide_lobes * kernels::k_guide_lobe_words, 0);
+  words.resize(begin + std::size_t{kernels::k_guide_lobes} * kernels::k_guide_lobe_words, 0);
   std::uint32_t* lobe = words.data() + begin;
   for (const Cluster& c : clusters_of(sources)) {
     const double wide = 1.6 * std::sqrt(c.spread()) + 0.02 * radius;

@@ -110,7 +110,7 @@ Size webp_size(const View& view) {
 }  // namespace
 
 std::string check_image_claims(std::span<const std::byte> bytes, const std::string& name) {
-  const std::string format = format_of(bytes);
+  std::string format = format_of(bytes);
   const View view(bytes);
   const auto check = [&](Size size) {
     const std::uint64_t most = believable_pixels(bytes.size());

@@ -59,7 +59,7 @@ OIIO::ImageSpec exr_spec(int width, int height, std::vector<std::string> channel
   return spec;
 }
 
-std::optional<SampleType> sample_type(OIIO::TypeDesc format) {
+std::optional<SampleType> sample_type(const OIIO::TypeDesc& format) {
   if (format == OIIO::TypeDesc::UINT8) return SampleType::uint8;
   if (format == OIIO::TypeDesc::UINT16) return SampleType::uint16;
   if (format == OIIO::TypeDesc::HALF) return SampleType::half;

@@ -94,7 +94,7 @@ class ShardBuildTest : public TinyDataset {
  protected:
   BuildResult build_shard(std::uint32_t number, const BuildOptions& options = {}) {
     shard = {number, k_shards};
-    const BuildResult result = build(options);
+    BuildResult result = build(options);
     shard = {};
     return result;
   }

@@ -37,10 +37,10 @@ TEST(HashTest, hex_is_that_of_the_two_words) {
                              Hash128{~std::uint64_t{0}, 1}}) {
     const std::string wanted = fmt::format("{:016x}{:016x}", hash.high, hash.low);
     EXPECT_EQ(hash.hex(), wanted);
-    EXPECT_EQ(std::string_view(HexText(hash)), wanted);
+    EXPECT_EQ(HexText(hash).text(), wanted);
     EXPECT_EQ(Hash128::from_hex(wanted), hash);
   }
-  EXPECT_EQ(std::string_view(HexText()), std::string(32, '0'));
+  EXPECT_EQ(HexText().text(), std::string(32, '0'));
 }
 
 TEST(HashTest, every_byte_but_the_sixteen_digits_is_refused_anywhere) {
