@@ -119,23 +119,26 @@ void Database::put_content(const std::filesystem::path& file, const FileStamp& s
 
 std::optional<KnownModel> Database::find_model(Hash128 content, int reader) {
   Statement row = connection_->prepare(
-      "SELECT geometry, uvs, colors, damage, box FROM geometry WHERE content = ?1 AND reader = ?2");
+      "SELECT geometry, uvs, colors, damage, box, normals FROM geometry "
+      "WHERE content = ?1 AND reader = ?2");
   if (!row.bind(1, content.hex()).bind(2, std::int64_t{reader}).step()) return std::nullopt;
   const auto box = json_column<std::array<double, 6>>(row, 4);
-  return KnownModel{{hash_column(row, 0), hash_column(row, 1), hash_column(row, 2)},
-                    json_column<MendedDamage>(row, 3),
-                    {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}}};
+  return KnownModel{
+      {hash_column(row, 0), hash_column(row, 1), hash_column(row, 2), hash_column(row, 5)},
+      json_column<MendedDamage>(row, 3),
+      {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}}};
 }
 
 void Database::put_model(Hash128 content, int reader, const KnownModel& model) {
-  connection_->prepare("INSERT OR REPLACE INTO geometry VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)")
+  connection_->prepare("INSERT OR REPLACE INTO geometry VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)")
       .bind(1, content.hex())
       .bind(2, std::int64_t{reader})
       .bind(3, model.hashes.shape.hex())
       .bind(4, nlohmann::json(model.damage).dump())
       .bind(5, model.hashes.uvs.hex())
       .bind(6, model.hashes.colors.hex())
-      .bind(7, nlohmann::json({model.box.least.x, model.box.least.y, model.box.least.z,
+      .bind(7, model.hashes.normals.hex())
+      .bind(8, nlohmann::json({model.box.least.x, model.box.least.y, model.box.least.z,
                                model.box.most.x, model.box.most.y, model.box.most.z})
                    .dump())
       .run();

@@ -18,9 +18,9 @@ CREATE TABLE input_file (
 ) WITHOUT ROWID;
 CREATE TABLE geometry (
   content TEXT NOT NULL, reader INTEGER NOT NULL,
-  geometry TEXT NOT NULL,     -- hash of places, normals and triangles
+  geometry TEXT NOT NULL,     -- hash of places and triangles
   damage TEXT NOT NULL,       -- mended, as JSON array of [name, count]
-  uvs TEXT NOT NULL, colors TEXT NOT NULL,   -- their hashes; all 0 where the mesh has none
+  uvs TEXT NOT NULL, colors TEXT NOT NULL, normals TEXT NOT NULL,   -- their hashes; 0 for none
   box TEXT NOT NULL,          -- of the file's coordinates: JSON array of the least and greatest x y z
   PRIMARY KEY (content, reader)
 ) WITHOUT ROWID;
@@ -92,9 +92,9 @@ CREATE INDEX product_rejected ON product (key)
   WHERE rejected_samples > 0 AND kind = 'image';
 CREATE INDEX product_capped ON product (key)
   WHERE instr(facts, '"capped":true') > 0 AND kind = 'image';
-PRAGMA user_version = 9;
+PRAGMA user_version = 10;
 )sql";
-static_assert(k_schema_version == 9, "the last line of k_tables states the version too");
+static_assert(k_schema_version == 10, "the last line of k_tables states the version too");
 
 /// From version 1 to 2.
 constexpr const char* k_add_facts = R"sql(
@@ -128,12 +128,12 @@ CREATE INDEX IF NOT EXISTS product_capped ON product (key)
   WHERE instr(facts, '"capped":true') > 0 AND kind = 'image';
 )sql";
 
-/// From version 7, and of any before it, to 8: what stood of models tells too little of them.
+/// From version 9, and of any before it, to 10: what stood of models tells too little of them.
 constexpr const char* k_new_geometry = R"sql(
 DROP TABLE geometry;
 CREATE TABLE geometry (
   content TEXT NOT NULL, reader INTEGER NOT NULL, geometry TEXT NOT NULL, damage TEXT NOT NULL,
-  uvs TEXT NOT NULL, colors TEXT NOT NULL, box TEXT NOT NULL,
+  uvs TEXT NOT NULL, colors TEXT NOT NULL, normals TEXT NOT NULL, box TEXT NOT NULL,
   PRIMARY KEY (content, reader)
 ) WITHOUT ROWID;
 CREATE TABLE IF NOT EXISTS image_bounds (
@@ -142,14 +142,14 @@ CREATE TABLE IF NOT EXISTS image_bounds (
 ) WITHOUT ROWID;
 )sql";
 
-/// From version 8 to 9.
+/// From version 8 to 9, and the version itself.
 constexpr const char* k_add_known = R"sql(
 CREATE TABLE IF NOT EXISTS known (
   program TEXT NOT NULL,
   question TEXT NOT NULL, answer TEXT NOT NULL,
   PRIMARY KEY (program, question)
 ) WITHOUT ROWID;
-PRAGMA user_version = 9;
+PRAGMA user_version = 10;
 )sql";
 
 std::int64_t user_version(Connection& connection) {
@@ -180,7 +180,7 @@ void prepare_schema(Connection& connection, const std::string& name) {
     if (version < 5) connection.execute(k_add_sphere);
     if (version < 6) connection.execute(k_add_rejected);
     if (version < 7) connection.execute(k_add_capped);
-    if (version < 8) connection.execute(k_new_geometry);
+    connection.execute(k_new_geometry);
     connection.execute(k_add_known);
     transaction.commit();
     return;

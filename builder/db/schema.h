@@ -17,9 +17,10 @@ namespace ds {
 ///   8: geometry.uvs, colors and box, and image_bounds; rows of geometry of older versions are
 ///      dropped, and their models read once more
 ///   9: known
+///   10: geometry.normals; rows of older versions are dropped likewise
 /// An older file is converted when it is opened; a newer one is refused, since writing to it could
 /// lose what this program does not know.
-inline constexpr int k_schema_version = 9;
+inline constexpr int k_schema_version = 10;
 
 /// Makes the tables where the file is new. Throws Error(io) for a file of a newer version,
 /// DamagedDatabase for one that is some other program's.

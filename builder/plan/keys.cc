@@ -112,8 +112,10 @@ std::string canonical_model(const MeshHashes& mesh, MeshExtras reads,
   if (options.size_m != 0) text.add("size_m", options.size_m);
   if (options.place_on_ground) text.add("ground_z_m", options.ground_z_m);
   text.add("centre", name_of(options.centre));
+  if (!reads.normals) return text.text();
   text.add("normals", name_of(options.normals));
   if (options.normals == Normals::smooth) text.add("crease_deg", options.crease_deg);
+  if (options.normals == Normals::keep) text.add("kept_normals", mesh.normals.hex());
   return text.text();
 }
 
@@ -238,7 +240,7 @@ class KeyMaker::State {
   std::vector<const char*> output_kinds_;  ///< of output files
   Hash128 geometry_program_;
   Shared<std::filesystem::path> model_;  ///< the last image's: a model's images follow each other
-  std::array<std::optional<Hash128>, 4> model_parts_;  ///< by what of the model is read
+  std::array<std::optional<Hash128>, 8> model_parts_;  ///< by what of the model is read
   std::unordered_map<const void*, Environment> environments_;
   std::map<std::tuple<const void*, const void*, bool>, Kind> kinds_;
   std::deque<std::pair<Features, std::string>> programs_;
@@ -268,7 +270,8 @@ Hash128 KeyMaker::State::model_part(const ImageSpec& image, MeshExtras reads) {
     model_parts_ = {};
     model_ = image.model_file;
   }
-  std::optional<Hash128>& part = model_parts_[(reads.uvs ? 1U : 0U) + (reads.colors ? 2U : 0U)];
+  std::optional<Hash128>& part =
+      model_parts_[(reads.uvs ? 1U : 0U) + (reads.colors ? 2U : 0U) + (reads.normals ? 4U : 0U)];
   if (!part)
     part = hash_text(texts_.fold(
         canonical_model(inputs_.model_hashes(image.model_file), reads, recipe_.normalise)));
@@ -354,6 +357,7 @@ Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& enviro
   const Scene& material = inputs_.material(image.material_file);
   kind.material_part = texts_.add(canonical_material(material));
   kind.reads = reads_of(material, static_cast<int>(material.materials.size()) - 1);
+  kind.reads.normals = true;
   kind.program = program_hash(image, environment, kind.material_part);
   kind.engine =
       TextForm(canonical_engine(settings, TextSet::k_reference + kind.program.hex()), {"seed"});

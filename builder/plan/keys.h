@@ -23,7 +23,7 @@ struct OutputFile {
 ///   render    what is traced: hash of the five parts
 ///   kept      of a film under way: render less spp, error and max_spp
 ///   geometry  what mask and depth are traced from: model, normalisation, the environment's meshes,
-///             all less uvs and colours, camera less its lens, size
+///             all less uvs, colours and normals, camera less its lens, size
 ///   outputs   each file: render or geometry key, tone map, encoding
 struct ImageKeys {
   PartHashes parts;  ///< of folded texts; the sixth, "files", is not in `render`
@@ -64,7 +64,7 @@ const ToneMap& tone_map_of(const Recipe& recipe, const Scene& environment);
 const ToneMap& tone_map_of(const Recipe& recipe, const EnvironmentFacts& environment);
 
 /// Canonical text of the model part: the mesh, with what its material reads of uvs and colours, and
-/// the normalisation steps that are switched on.
+/// the normalisation steps that are switched on; those of normals where `reads` has them.
 std::string canonical_model(const MeshHashes& mesh, MeshExtras reads,
                             const NormaliseOptions& options);
 

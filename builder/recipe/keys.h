@@ -26,10 +26,21 @@ enum class KeyType {
 
 using KeyRange = NumberRange;
 
+/// The most that a key's value decides: what becomes stale when it changes.
+enum class Moves {
+  images,  ///< which images there are, or which model, material and environment they show
+  scene,   ///< what cameras see: pictures, masks and depths
+  film,    ///< what is traced for pictures, and so pictures alone
+  files,   ///< which files there are, or what is made of what was traced; of the tone map also the
+           ///< film where engine.error is of the developed picture
+  manifest,  ///< what the manifest says, which holds all settings
+};
+
 /// One key of a recipe. The table of these is what the reader checks against and what
 /// recipes/README.md's reference is made from, so a key has one description.
 struct KeySpec {
   std::string_view name;  ///< "camera.fov_deg"
+  Moves moves;
   KeyType type;
   std::string_view unit;           ///< "m", "degree", "" where there is none
   std::string_view default_value;  ///< TOML; "" where there is none; "(...)": in words

@@ -37,6 +37,22 @@ std::string_view type_text(KeyType type) {
   return "";
 }
 
+std::string_view moves_text(Moves moves) {
+  switch (moves) {
+    case Moves::images:
+      return "which images";
+    case Moves::scene:
+      return "pictures, masks, depths";
+    case Moves::film:
+      return "pictures";
+    case Moves::files:
+      return "files";
+    case Moves::manifest:
+      return "manifest";
+  }
+  return "";
+}
+
 std::string replace_all(std::string text, std::string_view from, std::string_view to) {
   for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size())) {
     text.replace(at, from.size(), to);
@@ -90,12 +106,13 @@ std::string recipe_reference() {
     if (own != section) {
       section = own;
       text += fmt::format(
-          "{}### [{}]\n\n| key | type and range | unit | default | what it does |\n"
-          "| --- | --- | --- | --- | --- |\n",
+          "{}### [{}]\n\n| key | type and range | unit | default | what it does | moves |\n"
+          "| --- | --- | --- | --- | --- | --- |\n",
           text.empty() ? "" : "\n", section);
     }
-    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.name.substr(own.size() + 1),
-                        type_cell(key), key.unit, default_cell(key), help_cell(key));
+    text += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", key.name.substr(own.size() + 1),
+                        type_cell(key), key.unit, default_cell(key), help_cell(key),
+                        moves_text(key.moves));
   }
   return text;
 }

@@ -167,7 +167,9 @@ class Writer {
 
   void write(const Object& object) {
     prefix_ = "objects." + object.name;
-    const Hash128 mesh = geometry_hash(object.mesh, reads_of(scene_, object.material));
+    MeshExtras reads = reads_of(scene_, object.material);
+    reads.normals = true;
+    const Hash128 mesh = geometry_hash(object.mesh, reads);
     add("mesh", std::string_view(mesh.hex()));
     add("material", std::string_view(material_name(object.material)));
     add("id", object.id);

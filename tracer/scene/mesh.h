@@ -41,9 +41,9 @@ using FileMesh = BasicMesh<Vec3d>;
 /// Each position rounded on its own.
 Mesh in_floats(FileMesh mesh);
 
-/// What a mesh may have beside places and normals, and textures may read.
+/// What a mesh may have beside places: what textures may read, and what it is shaded by.
 struct MeshExtras {
-  bool uvs = false, colors = false;
+  bool uvs = false, colors = false, normals = false;
   bool operator==(const MeshExtras&) const = default;
 };
 
@@ -177,13 +177,13 @@ Mesh normalise(const FileMesh& mesh, const NormaliseOptions& options);
 /// Hash of positions, normals, triangles and of those of uvs and colours that are asked for and
 /// there, bit by bit and in order: what a re-saved file keeps. Files of one geometry in different
 /// formats, headers, comments or spellings of equal numbers have the same hash once read.
-Hash128 geometry_hash(const Mesh& mesh, MeshExtras extras = {true, true});
+Hash128 geometry_hash(const Mesh& mesh, MeshExtras extras = {true, true, true});
 /// The same hash where all positions are floats' values.
-Hash128 geometry_hash(const FileMesh& mesh, MeshExtras extras = {true, true});
+Hash128 geometry_hash(const FileMesh& mesh, MeshExtras extras = {true, true, true});
 
-/// The hash of a mesh less its uvs and colours, and theirs: zero where it has none.
+/// The hash of a mesh's places and triangles, and those of the rest: zero where it has none.
 struct MeshHashes {
-  Hash128 shape, uvs, colors;
+  Hash128 shape, uvs, colors, normals;
   bool operator==(const MeshHashes&) const = default;
 };
 MeshHashes mesh_hashes(const FileMesh& mesh);

@@ -26,7 +26,7 @@ Hash128 hash_of(const char* name, const std::vector<Position>& positions, const 
   static_assert(sizeof(Vec3) == 12 && sizeof(Vec3d) == 24 && sizeof(Vec2) == 8);
   std::string text = "mesh 1\n";
   add_array(text, name, positions);
-  add_array(text, "normals", mesh.normals);
+  add_array(text, "normals", extras.normals ? mesh.normals : std::vector<Vec3>());
   add_array(text, "uvs", extras.uvs ? mesh.uvs : std::vector<Vec2>());
   add_array(text, "triangles", mesh.triangles);
   if (extras.colors && !mesh.colors.empty()) add_array(text, "colors", mesh.colors);
@@ -56,7 +56,8 @@ Hash128 geometry_hash(const FileMesh& mesh, MeshExtras extras) {
 }
 
 MeshHashes mesh_hashes(const FileMesh& mesh) {
-  return {geometry_hash(mesh, MeshExtras{}), hash_of_extra(mesh.uvs), hash_of_extra(mesh.colors)};
+  return {geometry_hash(mesh, MeshExtras{}), hash_of_extra(mesh.uvs), hash_of_extra(mesh.colors),
+          hash_of_extra(mesh.normals)};
 }
 
 }  // namespace ds

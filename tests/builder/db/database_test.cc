@@ -86,8 +86,8 @@ TEST(Database, KnowsAFileByEveryPartOfItsStamp) {
 TEST(Database, KeepsModelsByTheVersionOfTheirReader) {
   Database database({});
   const Box box{{-0.1, 1.0 / 3, -7e17}, {0, 1e-300, 5}};
-  const KnownModel whole{{k_b, {}, {}}, {}, box};
-  const KnownModel mended{{k_b, k_a, k_b}, {{"out_of_range", 2}, {"non_finite", 1}}, box};
+  const KnownModel whole{{k_b, {}, {}, {}}, {}, box};
+  const KnownModel mended{{k_b, k_a, k_b, k_a}, {{"out_of_range", 2}, {"non_finite", 1}}, box};
   database.put_model(k_a, 1, whole);
   EXPECT_EQ(database.find_model(k_a, 1), whole);
   EXPECT_FALSE(database.find_model(k_a, 2));
@@ -196,7 +196,7 @@ TEST(Database, ForgetsModelsOfVersionTwoWhoseDamageIsNotKnown) {
   {
     Database database(file);
     database.put_product(product, {});
-    database.put_model(k_a, 1, {{k_b, {}, {}}, {}, {}});
+    database.put_model(k_a, 1, {{k_b, {}, {}, {}}, {}, {}});
   }
   Connection(file).execute(
       "ALTER TABLE geometry DROP COLUMN damage; "
@@ -205,7 +205,7 @@ TEST(Database, ForgetsModelsOfVersionTwoWhoseDamageIsNotKnown) {
   Database database(file);
   EXPECT_FALSE(database.find_model(k_a, 1));
   EXPECT_TRUE(database.find_product(k_a));
-  database.put_model(k_a, 1, {{k_b, {}, {}}, {{"non_finite", 1}}, {}});
+  database.put_model(k_a, 1, {{k_b, {}, {}, {}}, {{"non_finite", 1}}, {}});
   EXPECT_EQ(database.find_model(k_a, 1)->damage, (MendedDamage{{"non_finite", 1}}));
 }
 

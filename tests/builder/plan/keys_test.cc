@@ -111,7 +111,7 @@ TEST_F(KeysTest, EachSettingMovesWhatItCanChangeAndNothingElse) {
   const Case cases[] = {
       {"model", [&] { image_.model_file = other_model; }, {true, true, true}, 0},
       {"size", [&] { recipe_.normalise.size_m = 0.2; }, {true, true, true}, 0},
-      {"crease", [&] { recipe_.normalise.crease_deg = 10; }, {true, true, true}, 0},
+      {"crease", [&] { recipe_.normalise.crease_deg = 10; }, {true, false, true}, 0},
       {"material",
        [&] {
          image_.material_file =
@@ -158,7 +158,7 @@ ImageKeys keys_of_whole_texts(const Recipe& recipe, Inputs& inputs, const ImageS
   TextSet texts;
   ImageKeys keys;
   keys.parts[0] = texts.add(
-      canonical_model(inputs.model_hashes(image.model_file), MeshExtras{}, recipe.normalise));
+      canonical_model(inputs.model_hashes(image.model_file), {.normals = true}, recipe.normalise));
   keys.parts[1] = texts.add(canonical_material(inputs.material(image.material_file)));
   keys.parts[2] = texts.add(canonical_environment(inputs.environment(image.environment_folder)));
   keys.parts[3] = texts.add(canonical_camera(image.camera));

@@ -106,7 +106,7 @@ TEST(GeometryHash, ChangesWithEveryPart) {
   EXPECT_NE(geometry_hash(swapped), hash);
 }
 
-TEST(GeometryHash, HoldsOfUvsAndColoursWhatIsAskedFor) {
+TEST(GeometryHash, HoldsBesidePlacesWhatIsAskedFor) {
   const std::string file =
       "STNOFF 3 1 0\n0 0 0 0 0 1 0 0\n1 0 0 0 0 1 1 0\n0 1 0 0 0 1 0 1\n3 0 1 2\n";
   const FileMesh mesh = parse_model(file, "m").mesh;
@@ -122,8 +122,13 @@ TEST(GeometryHash, HoldsOfUvsAndColoursWhatIsAskedFor) {
   // A mesh that has none is the same mesh, whatever is asked for.
   FileMesh bare = mesh;
   bare.uvs.clear();
+  bare.normals.clear();
   EXPECT_EQ(geometry_hash(bare, MeshExtras{}), geometry_hash(mesh, MeshExtras{}));
   EXPECT_EQ(geometry_hash(bare), geometry_hash(bare, MeshExtras{}));
+  other = mesh;
+  other.normals[0] = {1, 0, 0};
+  EXPECT_EQ(geometry_hash(other, {true, true}), geometry_hash(mesh, {true, true}));
+  EXPECT_NE(geometry_hash(other, {.normals = true}), geometry_hash(mesh, {.normals = true}));
 }
 
 TEST(MeshHashes, EachIsOfItsPart) {
@@ -142,6 +147,10 @@ TEST(MeshHashes, EachIsOfItsPart) {
   other.colors.assign(3, {1, 0, 0, 1});
   EXPECT_EQ(mesh_hashes(other).shape, hashes.shape);
   EXPECT_NE(mesh_hashes(other).colors, Hash128{});
+  other = mesh;
+  other.normals[0] = {1, 0, 0};
+  EXPECT_EQ(mesh_hashes(other).shape, hashes.shape);
+  EXPECT_NE(mesh_hashes(other).normals, hashes.normals);
 }
 
 TEST(GeometryHash, IsTheSameOnEveryMachine) {

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every key of a recipe moves what its row says, no more and no less: two values of it are planned
+// and compared.
+#include "builder/recipe/keys.h"
+#include "tests/builder/tiny_dataset.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+namespace ds {
+namespace {
+
+/// Two values of a key that show the most it moves, under what it needs besides (--set).
+struct Flip {
+  std::string_view key;
+  std::string one, other;
+  std::vector<std::string> with = {};
+};
+
+const std::string k_list = R"(camera.set="list")";
+const std::string k_dodecahedron = R"(camera.set="half-dodecahedron")";
+const std::string k_fit = R"(camera.distance_m="fit")";
+const std::string k_lens = "camera.lens_radius_m=0.01";
+const std::string k_target = "engine.error=0.1";
+const std::string k_linear = R"(outputs.tone_map="linear")";
+const std::string k_reinhard = R"(outputs.tone_map="reinhard02")";
+const std::string k_random_material = R"(materials.assign="random")";
+const std::string k_random_place = R"(environments.assign="random")";
+
+class Moving : public TinyDataset {
+ protected:
+  Moving() {
+    const auto put = [&](const std::string& name, const std::string& text) {
+      write_file_atomic(recipe_folder() / name, text);
+    };
+    put("all.cla", "PSB 1\n1 2\n\nthing 0 2\nbox\ntetra\n");
+    put("box.cla", "PSB 1\n1 1\n\nthing 0 1\nbox\n");
+    std::filesystem::create_directories(recipe_folder() / "models/more");
+    std::filesystem::copy(recipe_folder() / "models/box.off",
+                          recipe_folder() / "models/more/third.off");
+    for (const char* folder : {"models", "materials", "environments"})
+      std::filesystem::copy(recipe_folder() / folder,
+                            recipe_folder() / (std::string("few_") + folder),
+                            std::filesystem::copy_options::recursive);
+    std::filesystem::remove(recipe_folder() / "few_models/tetra.ply");
+    std::filesystem::remove(recipe_folder() / "few_materials/red.mat");
+    std::filesystem::remove_all(recipe_folder() / "few_environments/plain");
+  }
+
+  std::string path(const std::string& name) const {
+    return '"' + (recipe_folder() / name).string() + '"';
+  }
+  std::string paths(const std::string& name) const { return "[" + path(name) + "]"; }
+
+  std::vector<Flip> flips() const;
+
+  Plan plan_with(const Flip& flip, const std::string& value) {
+    request.overrides = flip.with;
+    request.overrides.push_back(std::string(flip.key) + "=" + value);
+    return plan();
+  }
+
+  static Moves moved(const Plan& a, const Plan& b) {
+    const auto all = [&](const auto& same) {
+      return std::equal(a.images.begin(), a.images.end(), b.images.begin(), b.images.end(), same);
+    };
+    const auto shows = [](const PlannedImage& x, const PlannedImage& y) {
+      return x.spec.id == y.spec.id && *x.spec.model_file == *y.spec.model_file &&
+             *x.spec.material_file == *y.spec.material_file &&
+             *x.spec.environment_folder == *y.spec.environment_folder;
+    };
+    if (!all(shows)) return Moves::images;
+    const bool geometry =
+        !all([](const auto& x, const auto& y) { return x.keys.geometry == y.keys.geometry; });
+    const bool film =
+        !all([](const auto& x, const auto& y) { return x.keys.render == y.keys.render; });
+    EXPECT_TRUE(film || !geometry) << "masks move, and pictures do not";
+    if (geometry) return Moves::scene;
+    if (film) return Moves::film;
+    const auto files = [](const PlannedImage& x, const PlannedImage& y) {
+      return std::equal(x.keys.outputs.begin(), x.keys.outputs.end(), y.keys.outputs.begin(),
+                        y.keys.outputs.end(), [](const OutputFile& one, const OutputFile& other) {
+                          return one.path == other.path && one.key == other.key;
+                        });
+    };
+    if (!all(files)) return Moves::files;
+    EXPECT_NE(a.labels.hash, b.labels.hash) << "a setting that the manifest does not hold";
+    return Moves::manifest;
+  }
+};
+
+std::vector<Flip> Moving::flips() const {
+  return {
+      {"dataset.name", "\"one\"", "\"other\""},
+      {"dataset.seed", "1", "2"},
+      {"dataset.licence", "\"\"", "\"CC0-1.0\""},
+      {"models.dir", path("models"), path("few_models")},
+      {"models.files", paths("models/box.off"), paths("models/tetra.ply")},
+      {"models.recursive", "false", "true"},
+      {"models.up", "\"y\"", "\"z\""},
+      {"models.size_m", "0.1", "0.2"},
+      {"models.ground_z_m", "-0.05", "-0.06"},
+      {"models.centre", "\"mass\"", "\"none\""},
+      {"models.normals", "\"smooth\"", "\"flat\""},
+      {"models.crease_deg", "10", "20"},
+      {"classes.train", "\"\"", path("all.cla")},
+      {"classes.test", "\"\"", path("all.cla")},
+      {"classes.split.test", "0.1", "0.9"},
+      {"classes.missing", "\"ignore\"", "\"error\"", {"classes.train=" + path("all.cla")}},
+      {"classes.unlisted", "\"keep\"", "\"skip\"", {"classes.train=" + path("box.cla")}},
+      {"materials.dir", path("materials"), path("few_materials")},
+      {"materials.files", paths("materials/red.mat"), paths("materials/green.mat")},
+      {"materials.assign", "\"cycle\"", "\"all\""},
+      {"materials.per", "\"model\"", "\"view\"", {k_random_material}},
+      {"environments.dir", path("environments"), path("few_environments")},
+      {"environments.files", paths("environments/plain"), paths("environments/floor")},
+      {"environments.assign", "\"cycle\"", "\"all\""},
+      {"environments.per", "\"view\"", "\"model\"", {k_random_place}},
+      {"camera.set", "\"orbit\"", "\"half-dodecahedron\""},
+      {"camera.distance_m", "0.4", "\"fit\""},
+      {"camera.fit_margin", "0.05", "0.1", {k_fit}},
+      {"camera.normalise", "true", "false", {k_dodecahedron}},
+      {"camera.positions", "[[0,-0.5,0.1]]", "[[0,-0.5,0.1],[0.5,0,0.1]]", {k_list}},
+      {"camera.count", "4", "5"},
+      {"camera.elevation_deg", "20", "30"},
+      {"camera.azimuth_deg", "0", "30"},
+      {"camera.target", "[0, 0, 0]", "[0, 0, 0.01]"},
+      {"camera.views", "[]", "[0, 1]"},
+      {"camera.fov_deg", "49", "50"},
+      {"camera.lens_radius_m", "0", "0.01"},
+      {"camera.focus", "\"origin\"", "\"target\"", {k_lens, "camera.target=[0, 0, 0.05]"}},
+      {"camera.focus_distance_m", "0.3", "0.4", {k_lens, R"(camera.focus="distance")"}},
+      {"engine.width", "32", "33"},
+      {"engine.height", "32", "33"},
+      {"engine.spp", "1", "2"},
+      {"engine.error", "false", "0.5"},
+      {"engine.max_spp", "64", "128", {k_target}},
+      {"engine.error_region", "\"image\"", "\"model\"", {k_target}},
+      {"engine.keep_film", "false", "true"},
+      {"engine.depth_total", "6", "7"},
+      {"engine.depth_diffuse", "4", "5"},
+      {"engine.depth_glossy", "4", "5"},
+      {"engine.depth_specular", "6", "7"},
+      {"engine.roulette_depth", "3", "4"},
+      {"engine.roulette_cap", "0.5", "0.6"},
+      {"engine.filter_width", "3", "2"},
+      {"engine.math", "\"strict\"", "\"fast\""},
+      {"engine.outlier_limit", "0", "100"},
+      {"engine.rejected_limit", "0.001", "0.5"},
+      {"outputs.image", "\"png\"", "false"},
+      {"outputs.mask", "true", "false"},
+      {"outputs.depth", "false", "\"exr\""},
+      {"outputs.tone_map", "\"environment\"", "\"autolinear\""},
+      {"outputs.tone_map_scale", "1", "2", {k_linear}},
+      {"outputs.tone_map_prescale", "1", "2", {k_reinhard}},
+      {"outputs.tone_map_postscale", "1", "2", {k_reinhard}},
+      {"outputs.tone_map_burn", "3", "4", {k_reinhard}},
+      {"outputs.tone_map_gamma", "2.2", "2", {k_linear}},
+      {"outputs.keep_film", "true", "false"},
+  };
+}
+
+TEST_F(Moving, EveryKeyMovesWhatItsRowSays) {
+  std::vector<std::string_view> flipped = {"classes.split.by"};  // there is one value only
+  for (const Flip& flip : flips()) {
+    flipped.push_back(flip.key);
+    const KeySpec* row = find_key(flip.key);
+    ASSERT_NE(row, nullptr) << flip.key;
+    const Moves found = moved(plan_with(flip, flip.one), plan_with(flip, flip.other));
+    EXPECT_EQ(static_cast<int>(found), static_cast<int>(row->moves)) << flip.key;
+  }
+  std::vector<std::string_view> names;
+  for (const KeySpec& key : recipe_keys())
+    names.push_back(key.name);
+  EXPECT_THAT(flipped, testing::UnorderedElementsAreArray(names));
+}
+
+// What is without effect under other values moves nothing but the manifest.
+TEST_F(Moving, NoPictureMovesByWhatIsNotInUse) {
+  const Flip flips[] = {
+      {"camera.focus", "\"origin\"", "\"target\"", {"camera.target=[0, 0, 0.05]"}},
+      {"camera.focus_distance_m", "0.3", "0.4", {R"(camera.focus="distance")"}},
+  };
+  for (const Flip& flip : flips) {
+    const Moves found = moved(plan_with(flip, flip.one), plan_with(flip, flip.other));
+    EXPECT_EQ(static_cast<int>(found), static_cast<int>(Moves::manifest)) << flip.key;
+  }
+}
+
+// engine.error is of the developed picture, so how that is developed decides what is traced.
+TEST_F(Moving, TheToneMapMovesTheFilmOfAnErrorTarget) {
+  for (const Flip& flip : flips()) {
+    if (!flip.key.starts_with("outputs.tone_map")) continue;
+    Flip with = flip;
+    with.with.push_back(k_target);
+    EXPECT_EQ(moved(plan_with(with, flip.one), plan_with(with, flip.other)), Moves::film)
+        << flip.key;
+  }
+}
+
+}  // namespace
+}  // namespace ds
