@@ -82,6 +82,7 @@ LightRow mesh_row(const Scene& scene, const Object& object, std::uint32_t first_
     areas.push_back(0.5 * length(cross(to_double(object.mesh.positions[t[1]]) - p0,
                                        to_double(object.mesh.positions[t[2]]) - p0)));
   }
+  DS_ASSERT(!areas.empty());  // find_interval wants one
   const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
   LightRow row{"mesh", luminance(material.emission.constant) * area * std::numbers::pi, {}};
   row.parameters.add(material.emission.constant);

@@ -63,6 +63,7 @@ DS_FN LightSample choose(mask m, LightSample a, LightSample b) {
 /// last. `count` >= 1 ascending entries from `at` on. Every lane takes the same number of steps.
 DS_FN natural find_interval(DS_GLOBAL float* table, natural at, uint count, real u) {
   natural low = (natural)(0u);
+  // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): it tries count = 0, too
   for (uint step = 1u << (31u - leading_zeros(count)); step != 0u; step >>= 1) {
     const natural next = low + step;
     const natural entry = choose_natural(next <= count, next, (natural)(count)) - 1u;
