@@ -231,7 +231,7 @@ TEST(Database, TrustsNoStampOfVersionThreeWhichHadNoCtime) {
 TEST(Database, ForgetsModelsOfVersionSevenWhoseExtrasAreNotKnown) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "db.sqlite";
-  const KnownModel model{{k_b, k_a, {}}, {}, {}};
+  const KnownModel model{{k_b, k_a, {}, {}}, {}, {}};
   { Database(file).put_model(k_a, 1, model); }
   Connection(file).execute(
       "ALTER TABLE geometry DROP COLUMN uvs; ALTER TABLE geometry DROP COLUMN colors; "
@@ -241,6 +241,18 @@ TEST(Database, ForgetsModelsOfVersionSevenWhoseExtrasAreNotKnown) {
   database.put_model(k_a, 1, model);
   EXPECT_EQ(database.find_model(k_a, 1), model);
   EXPECT_FALSE(database.find_image_bounds(k_a, 1));
+}
+
+TEST(Database, ForgetsModelsOfVersionNineWhoseNormalsAreNotApart) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "db.sqlite";
+  const KnownModel model{{k_b, k_a, {}, k_b}, {}, {}};
+  { Database(file).put_model(k_a, 1, model); }
+  Connection(file).execute("ALTER TABLE geometry DROP COLUMN normals; PRAGMA user_version = 9");
+  Database database(file);
+  EXPECT_FALSE(database.find_model(k_a, 1));
+  database.put_model(k_a, 1, model);
+  EXPECT_EQ(database.find_model(k_a, 1), model);
 }
 
 TEST(Database, TakesFactsThatAreNoneForDamage) {
