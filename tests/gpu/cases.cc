@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/gpu/cases.h"
+
+#include "tracer/base/error.h"
+#include "tracer/scene/sdl.h"
+#include "tracer/scene/type_tables.h"
+
+#include <string>
+
+namespace ds::gpu {
+namespace {
+
+using namespace pictures;
+
+EngineSettings tiny_engine() {
+  EngineSettings engine;
+  engine.width = 24;
+  engine.height = 16;
+  engine.spp = 4;
+  engine.seed = 0x123456789abcdef0u;
+  return engine;
+}
+
+Camera tiny_camera() {
+  Camera camera;
+  camera.position = {0.2f, -1.3f, 0.8f};
+  camera.focus_distance_m = 1.3;
+  return camera;
+}
+
+/// A floor; the first two materials are what a mix takes.
+Scene floor_scene() {
+  Scene scene;
+  const int grey = add_matte(scene, {0.6f, 0.55f, 0.5f});
+  add_matte(scene, {0.1f, 0.2f, 0.6f});
+  add_object(scene, quad({0, 0, -0.35f}, {2, 0, 0}, {0, 2, 0}), grey);
+  return scene;
+}
+
+Picture of_scene(std::string name, Scene scene) {
+  return {std::move(name), std::move(scene), tiny_camera(), tiny_engine()};
+}
+
+/// The model shows it beside a small light, so that what casts caustics is guided to.
+Picture of_material(const NodeType& type) {
+  Scene scene = floor_scene();
+  const int material = add_material(scene, type.name);
+  add_object(scene, sphere({0, 0, 0}, 0.34f, 9, true), material, k_model_object_id);
+  scene.lights.push_back(point_light({-1, -1, 2}, {3, 2.5f, 2}));
+  scene.lights.push_back(constant_light({0.2f, 0.25f, 0.3f}));
+  return of_scene(fmt::format("material-{}", type.kernel_prefix), scene);
+}
+
+Picture of_texture(const NodeType& type) {
+  Scene scene = floor_scene();
+  scene.images.push_back(small_sky());
+  const int texture = add_texture(scene, type.name, {{0.8f, 0.6f, 0.4f}, -1});
+  const int material = add_material(scene, "matte");
+  scene.materials.back().inputs[0] = {{}, texture};
+  Mesh panel = quad({0, 0.1f, 0.1f}, {0.5f, 0, 0.1f}, {0, 0.2f, 0.4f});
+  panel.colors = {{0.9f, 0.1f, 0.1f, 0.2f},
+                  {0.1f, 0.8f, 0.1f, 0.4f},
+                  {0.1f, 0.1f, 0.7f, 0.6f},
+                  {0.6f, 0.6f, 0, 0.8f}};
+  add_object(scene, panel, material, k_model_object_id);
+  scene.lights.push_back(point_light({-1, -1, 2}, {3, 2.5f, 2}));
+  return of_scene(fmt::format("texture-{}", type.kernel_prefix), scene);
+}
+
+void add_light(Scene& scene, std::string_view prefix) {
+  if (prefix == "point") {
+    scene.lights.push_back(point_light({-1, -1, 2}, {3, 2.5f, 2}));
+  } else if (prefix == "spot") {
+    scene.lights.push_back(spot_light({1, -1, 2}, {-0.45f, 0.4f, -0.8f}, 30, 20, {8, 9, 10}));
+  } else if (prefix == "sun") {
+    scene.lights.push_back(sun_light({0.3f, -0.5f, 0.8f}, 1.0, {900, 800, 700}));
+  } else if (prefix == "constant_infinite") {
+    scene.lights.push_back(constant_light({0.3f, 0.4f, 0.5f}));
+  } else if (prefix == "infinite") {
+    scene.images.push_back(small_sky());
+    scene.lights.push_back(image_light(0));
+  } else if (prefix == "mesh") {
+    const int emitter = add_matte(scene, {0, 0, 0});
+    scene.materials.back().emits = true;
+    scene.materials.back().emission.constant = {4, 3, 2};
+    add_object(scene, quad({0, -0.5f, 1.2f}, {0.3f, 0, 0}, {0, -0.2f, 0}), emitter);
+  } else {
+    fail(ErrorKind::usage, "light {} has no scene in tests/gpu/cases.cc", prefix);
+  }
+}
+
+Picture of_light(const LightType& type) {
+  Scene scene = floor_scene();
+  add_object(scene, box({0, 0, 0}, {0.2f, 0.25f, 0.3f}), 1, k_model_object_id);
+  add_light(scene, type.kernel_prefix);
+  return of_scene(fmt::format("light-{}", type.kernel_prefix), scene);
+}
+
+/// A teapot in red plastic. A picture of 4 million samples takes a tenth of a second where 40
+/// million are traced a second, and fills a GPU.
+Picture of_environment(const std::filesystem::path& assets, const char* name) {
+  NormaliseOptions options;
+  options.up = UpAxis::y;
+  Scene scene = compose(read_environment(assets / "environments" / name),
+                        read_material(assets / "materials/red-plastic.mat"),
+                        normalise(read_model(assets / "models/teapot-1.ply").mesh, options));
+  Camera camera;
+  camera.position = normalized(Vec3d{1, 1, 1}) * 0.252;
+  EngineSettings engine;
+  engine.spp = 16;
+  return {name, std::move(scene), camera, engine};
+}
+
+}  // namespace
+
+std::vector<Case> all_cases(const std::filesystem::path& assets) {
+  std::vector<Case> cases;
+  for (const NodeType& type : material_types())
+    cases.push_back({of_material(type)});
+  for (const NodeType& type : texture_types())
+    cases.push_back({of_texture(type)});
+  for (const LightType& type : light_types())
+    cases.push_back({of_light(type)});
+  for (const Picture& picture : all_effects()) {
+    cases.push_back({picture});
+    cases.back().picture.name = "all-" + picture.name;
+  }
+  cases.push_back({all_effects().back()});
+  cases.back().picture.name = "all-scheduled";
+  cases.back().picture.engine.target = ErrorTarget{0.02, 48, cases.back().picture.scene.tone_map};
+  for (const char* name : {"office", "outdoor", "studio"})
+    cases.push_back({of_environment(assets, name), Traces::picture, true});
+  for (std::size_t i = cases.size() - 3, end = cases.size(); i < end; ++i) {
+    Case geometry = cases[i];
+    geometry.picture.name += "-geometry";
+    geometry.picture.engine.width = geometry.picture.engine.height = 1024;
+    geometry.traces = Traces::geometry;
+    cases.push_back(std::move(geometry));
+  }
+  return cases;
+}
+
+}  // namespace ds::gpu

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tests/render/pictures.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace ds::gpu {
+
+/// What a case of a pack traces: a picture with its geometry, or, `timed`, a large picture or its
+/// geometry alone.
+enum class Traces { picture_and_geometry, picture, geometry };
+
+struct Case {
+  pictures::Picture picture;
+  Traces traces = Traces::picture_and_geometry;
+  bool timed = false;
+};
+
+/// A small picture of each material, texture and light of the tables, the pictures of all effects
+/// (pictures.h), one by an error target, and teapots in the shipped environments, which are timed.
+/// Throws Error(usage) for a light that has no scene here.
+std::vector<Case> all_cases(const std::filesystem::path& assets);
+
+}  // namespace ds::gpu

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes a pack of launches and what they must give, for GPUs on machines without this project
+// (ci/gpu; recorder.h says what a pack is):
+//
+//   gpu_pack FOLDER ASSETS [CASE...]
+//
+// All cases, or those named. They are traced on this machine's first CPU device as GPUs are asked
+// to: one path a work-item, groups of 64.
+#include "tests/bench/ray_scene.h"
+#include "tests/gpu/cases.h"
+#include "tests/gpu/recorder.h"
+#include "tracer/accel/bvh.h"
+#include "tracer/base/error.h"
+#include "tracer/device/opencl.h"
+#include "tracer/device/program_text.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdio>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace ds {
+namespace {
+
+constexpr std::size_t k_group = 64;
+constexpr int k_ray_picture_size = 512;  // its pixels fill groups
+
+/// Cases that were asked for, and which of them there are.
+class Wanted {
+ public:
+  explicit Wanted(std::span<char*> names)
+      : left_(names.begin(), names.end()), all_(left_.empty()) {}
+
+  bool take(const std::string& name) {
+    if (all_) return true;
+    const auto found = std::find(left_.begin(), left_.end(), name);
+    if (found == left_.end()) return false;
+    left_.erase(found);
+    return true;
+  }
+  void check_all_taken() const {
+    if (!left_.empty()) fail(ErrorKind::usage, "there is no case {}", left_.front());
+  }
+
+ private:
+  std::vector<std::string> left_;
+  bool all_;
+};
+
+TracerOptions as_on_a_gpu() {
+  TracerOptions options = pictures::tracer_options();
+  options.lanes = options.item_pixels = 1;
+  options.work_group_size = static_cast<int>(k_group);
+  return options;
+}
+
+void record(Tracer& tracer, const gpu::Case& one) {
+  const pictures::Picture& picture = one.picture;
+  const EngineSettings& engine = picture.engine;
+  gpu::begin_case(picture.name);
+  const auto pixels =
+      static_cast<std::uint64_t>(engine.width) * static_cast<std::uint64_t>(engine.height);
+  const bool geometry_alone = one.traces == gpu::Traces::geometry;
+  if (one.timed && geometry_alone) gpu::time_case(pixels, "rays", "trace_geometry");
+  if (one.timed && !geometry_alone)
+    gpu::time_case(pixels * static_cast<std::uint64_t>(engine.spp), "samples", "trace_paths");
+  tracer.set_scene(picture.scene);
+  if (!geometry_alone) tracer.trace(picture.camera, engine);
+  if (one.traces != gpu::Traces::picture)
+    tracer.trace_geometry(picture.camera, engine.width, engine.height);
+  gpu::end_case();
+}
+
+/// Traces rays one by one on the device; gives the words that the kernel answers, `words` a ray.
+class RayTracer {
+ public:
+  explicit RayTracer(const std::vector<Corners>& triangles)
+      : device_(""),
+        program_(device_.build(rays_program_text(),
+                               fmt::format("{} -DDS_LANES=1", k_strict_options), DS_TEST_PROGRAMS)),
+        bvh_(build_bvh(triangles)) {}
+
+  std::vector<std::uint32_t> trace(const char* function, const std::vector<RayWords>& rays,
+                                   std::size_t words) {
+    Kernel kernel = device_.kernel(program_, function);
+    std::vector<std::uint32_t> answers(rays.size() * words);
+    const Buffer out = device_.make_buffer(answers.size() * sizeof(std::uint32_t));
+    kernel.set(0, device_.upload(bvh_.nodes));
+    kernel.set(1, device_.upload(bvh_.leaves));
+    kernel.set(2, device_.upload(rays));
+    kernel.set(3, out);
+    device_.run(kernel, 0, rays.size(), k_group);
+    device_.read(out, std::as_writable_bytes(std::span(answers)));
+    return answers;
+  }
+
+  /// The same as a case.
+  void record(const std::string& name, const char* function, const std::vector<RayWords>& rays,
+              std::size_t words) {
+    gpu::begin_case(name);
+    gpu::time_case(rays.size(), "rays", function);
+    trace(function, rays, words);
+    gpu::end_case();
+  }
+
+ private:
+  Device device_;
+  Program program_;
+  Bvh bvh_;
+};
+
+void record_ray_cases(Wanted& wanted) {
+  const bool camera = wanted.take("rays-camera"), bounce = wanted.take("rays-bounce"),
+             shadow = wanted.take("rays-shadow");
+  if (!camera && !bounce && !shadow) return;
+  const std::vector<Corners> triangles = ray_scene();
+  RayTracer tracer(triangles);
+  const std::vector<RayWords> rays = camera_rays(k_ray_picture_size);
+  const std::vector<std::uint32_t> hits = tracer.trace("trace_nearest", rays, 4);
+  std::vector<Met> met;  // trace_nearest answers t, b1, b2, id
+  for (std::size_t i = 0; i < hits.size(); i += 4)
+    met.push_back({std::bit_cast<float>(hits[i]), hits[i + 3], hits[i + 3] != ~0u});
+  std::vector<RayWords> bounces = bounce_rays(triangles, rays, met);
+  bounces.resize(bounces.size() / k_group * k_group);
+  if (camera) tracer.record("rays-camera", "trace_nearest", rays, 4);
+  if (bounce) tracer.record("rays-bounce", "trace_nearest", bounces, 4);
+  if (shadow) tracer.record("rays-shadow", "trace_any", bounces, 1);
+}
+
+void run(std::span<char*> arguments) {
+  if (arguments.size() < 3) fail(ErrorKind::usage, "wanted FOLDER ASSETS [CASE...]");
+  Wanted wanted(arguments.subspan(3));
+  Tracer tracer(as_on_a_gpu());
+  if (!tracer.runs_on_cpu()) fail(ErrorKind::device, "no CPU device to trace on");
+  for (const gpu::Case& one : gpu::all_cases(arguments[2]))
+    if (wanted.take(one.picture.name)) {
+      fmt::print(stderr, "{}\n", one.picture.name);
+      record(tracer, one);
+    }
+  record_ray_cases(wanted);
+  wanted.check_all_taken();
+  gpu::write_pack(arguments[1]);
+}
+
+}  // namespace
+}  // namespace ds
+
+int main(int count, char** arguments) {
+  try {
+    ds::run({arguments, static_cast<std::size_t>(count)});
+    return 0;
+  } catch (const ds::Error& error) {
+    fmt::print(stderr, "gpu_pack: {}\n", error.what());
+    return ds::exit_code(error.kind());
+  }
+}
