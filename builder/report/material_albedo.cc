@@ -42,6 +42,7 @@ std::vector<float> values_of(const Material& material, const NodeType& row) {
   for (std::size_t i = 0; i < row.inputs.size(); ++i)
     for (int axis = 0; axis < row.inputs[i].width; ++axis)
       values.push_back(material.inputs[i].constant[axis]);
+  values.insert(values.end(), material.numbers.begin(), material.numbers.end());
   return values;
 }
 

@@ -55,8 +55,9 @@ std::string list_definition(std::string_view name, const std::vector<std::string
   return text + "\n";
 }
 
+/// Of a material: its inputs' and its numbers.
 int input_floats(const NodeType& type) {
-  int floats = 0;
+  int floats = static_cast<int>(type.numbers.size());
   for (const InputType& input : type.inputs)
     floats += input.width;
   return floats;

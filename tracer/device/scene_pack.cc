@@ -111,6 +111,8 @@ void pack_inputs(const Material& material, Words& out) {
       out.add(value.z);
     }
   }
+  for (const float number : material.numbers)
+    out.add(number);
 }
 
 void pack_materials(const Scene& scene, const Features& features,

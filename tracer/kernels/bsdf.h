@@ -14,7 +14,7 @@
 //   BsdfSample NAME_sample(const real* p, Viewer viewer, real2 u, real2 lobe)
 //   natural    NAME_child(const real* p, mask outside, mask here, real* choice)
 //
-// `p` holds the inputs' values at the surface point, and from NAME_end on what was derived. No
+// `p` holds the inputs' values at the surface point, behind them the numbers, and from NAME_end on what was derived. No
 // material returns NaN or a negative number for any input in range.
 #pragma once
 
@@ -25,6 +25,7 @@ enum { k_most_derived = 16 };
 
 /// Turns an input list into word offsets: each slot's number is the sum of the widths before it.
 #define DS_SLOT(slot, width, default_value) slot, slot##_last = slot + width - 1,
+#define DS_NUMBER_SLOT(slot, default_value) slot,
 
 typedef struct {
   real3 wo;      ///< to the viewer; wo.z > 0

@@ -69,7 +69,7 @@ kernels::LightSample sample_light(std::string_view kind, kernels::LightTables ta
 /// What there is to know of a material here.
 struct Substance {
   int type;                   ///< row of material_types()
-  std::vector<float> inputs;  ///< as the kernels read them
+  std::vector<float> inputs;  ///< and numbers, as the kernels read them
   std::array<int, kernels::k_most_children> children;
   bool casts = false, receives = false;  ///< caustics, itself or a part of it
 };
@@ -93,6 +93,7 @@ std::vector<Substance> substances(const Scene& scene) {
       s.inputs.push_back(value.x);
       if (wide) s.inputs.insert(s.inputs.end(), {value.y, value.z});
     }
+    s.inputs.insert(s.inputs.end(), material.numbers.begin(), material.numbers.end());
     list.push_back(std::move(s));
   }
   return list;

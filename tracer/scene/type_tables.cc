@@ -90,7 +90,6 @@ InputLimit limit_of(std::string_view name) {
       {"amount", k_share},
       {"channel", {.least = -1, .most = 2}},
       {"octaves", {.least = 0, .most = 32}},  // a sample pays for each
-      {"multibounce", k_share, true},
       {"doublesided", k_share, true},
   };
   const auto at = std::find_if(std::begin(k_limits), std::end(k_limits),

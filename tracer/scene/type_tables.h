@@ -25,7 +25,8 @@ struct InputType {
   float default_value;
 };
 
-/// A number or switch that is fixed when the scene is read.
+/// A number or switch that is fixed when the scene is read. A material's stand behind its inputs in
+/// what its functions take.
 struct NumberType {
   std::string_view name;
   float default_value;

@@ -254,6 +254,39 @@ TEST_P(Bsdf, CastsAndReceivesCausticsByItsLobes) {
 
 INSTANTIATE_TEST_SUITE_P(Every, Bsdf, testing::ValuesIn(materials::all()), test_name);
 
+// As LuxCore has it: the back of glossy2 is its base alone, unless it is double-sided.
+TEST(Glossy2, HasNoCoatOnItsBackUnlessItIsDoublesided) {
+  const std::vector<Case> cases = materials::all();
+  const Case& glossy2 =
+      *std::find_if(cases.begin(), cases.end(), [](const Case& c) { return c.name == "glossy2"; });
+  std::vector<float> p = materials::inputs(glossy2, 0.2f);
+  p[glossy2_kd] = 0.25f;
+  p[glossy2_d] = 2;  // nor does it absorb
+  p[glossy2_ka] = 3;
+  std::mt19937 random(5);
+  for (int i = 0; i < 1000; ++i) {
+    const auto number = [&] { return unit_interval(static_cast<std::uint32_t>(random())); };
+    const float azimuth = 6 * number();
+    Viewer back = materials::viewer(0.01 + 0.98 * double{number()}, false, double{azimuth});
+    Viewer front = back;
+    front.outside = true;
+    const real2 u = {number(), number()}, lobe = {number(), number()};
+    p[glossy2_doublesided] = 0;
+    const BsdfSample s = glossy2.sample(p.data(), back, u, lobe);
+    ASSERT_TRUE(s.valid && !s.glossy && !s.specular);
+    const BsdfValue v = glossy2.evaluate(p.data(), back, s.wi);
+    EXPECT_NEAR(double{v.value.x}, 0.25 * double{s.wi.z} / k_pi, 1e-6);
+    EXPECT_NEAR(double{v.value.y}, 0.5 * double{s.wi.z} / k_pi, 1e-6);
+    EXPECT_NEAR(double{v.pdf}, double{s.wi.z} / k_pi, 1e-6);
+    EXPECT_NEAR(double{s.weight.x}, 0.25, 1e-5);
+    p[glossy2_doublesided] = 1;
+    const BsdfValue a = glossy2.evaluate(p.data(), back, s.wi);
+    const BsdfValue b = glossy2.evaluate(p.data(), front, s.wi);
+    EXPECT_EQ(a.value.x, b.value.x);
+    EXPECT_EQ(a.pdf, b.pdf);
+  }
+}
+
 TEST(Fresnel, Dielectric) {
   float cos_t = 0;
   EXPECT_NEAR(dielectric_fresnel(1.5f, 1, &cos_t), 0.04, 1e-6);

@@ -28,12 +28,15 @@ float least(std::string_view name) {
   return 0;
 }
 
+/// Numbers stand behind inputs, at their defaults.
 template <typename Value>
 std::vector<float> fill(const Case& material, const Value& value) {
   std::vector<float> p;
   for (const InputType& input : material.type->inputs)
     for (int i = 0; i < input.width; ++i)
       p.push_back(value(input));
+  for (const NumberType& number : material.type->numbers)
+    p.push_back(number.default_value);
   return p;
 }
 
@@ -74,7 +77,7 @@ std::vector<float> white_inputs(const Case& material, float roughness) {
 
 std::vector<float> random_inputs(const Case& material, std::mt19937& random) {
   std::uniform_real_distribution<float> u(0, 1);
-  return fill(material, [&](const InputType& input) {
+  std::vector<float> p = fill(material, [&](const InputType& input) {
     const float low = least(input.name);
     const float high = greatest(input.name);
     const float choice = u(random);
@@ -83,6 +86,10 @@ std::vector<float> random_inputs(const Case& material, std::mt19937& random) {
     if (choice < 0.4f && low == 0) return 1e-9f;
     return low + (high - low) * u(random);
   });
+  // All of them are switches.
+  for (std::size_t i = 0; i < material.type->numbers.size(); ++i)
+    p[p.size() - 1 - i] = u(random) < 0.5f ? 0.0f : 1.0f;
+  return p;
 }
 
 Viewer viewer(double cosine, bool outside, double azimuth) {

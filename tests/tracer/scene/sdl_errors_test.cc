@@ -73,8 +73,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"scene.materials.a.kd = opencolorio cfg space 1 1 1",
              "m.scn:1: scene.materials.a.kd: colour space of \"opencolorio cfg space 1 1 1\" is "
              "not supported yet"},
-        Case{"scene.materials.a.type = glossy2\nscene.materials.a.multibounce = maybe",
-             "m.scn:2: scene.materials.a.multibounce: wanted 0, 1, true or false, found \"maybe\""},
+        Case{"scene.materials.a.type = glossy2\nscene.materials.a.doublesided = maybe",
+             "m.scn:2: scene.materials.a.doublesided: wanted 0, 1, true or false, found \"maybe\""},
         Case{"scene.textures.a.type = scale\nscene.textures.a.texture1 = b\n"
              "scene.textures.b.type = fbm\nscene.textures.b.mapping.type = globalmapping3d\n"
              "scene.materials.m.kd = a",

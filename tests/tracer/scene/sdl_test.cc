@@ -42,7 +42,7 @@ TEST(SdlMaterial, DefaultsAreLuxCores) {
   EXPECT_EQ(input_of(glossy, "kd").constant, (Vec3{0.5f, 0.5f, 0.5f}));
   EXPECT_EQ(input_of(glossy, "ks").constant, (Vec3{0.5f, 0.5f, 0.5f}));
   EXPECT_EQ(input_of(glossy, "uroughness").constant.x, 0.1f);
-  EXPECT_EQ(number_of(glossy, "multibounce"), 0);
+  EXPECT_EQ(number_of(glossy, "doublesided"), 0);
 
   const Material glass = folder.material("scene.materials.a.type = glass\n").materials.at(0);
   EXPECT_EQ(input_of(glass, "interiorior").constant.x, 1.5f);
@@ -60,7 +60,7 @@ TEST(SdlMaterial, ConstantsTexturesAndColourSpaces) {
       "scene.materials.a.ka = \"luxcore 2 0.5 0.5 0.5\"\n"
       "scene.materials.a.uroughness = grey\n"
       "scene.materials.a.vroughness = red\n"
-      "scene.materials.a.multibounce = true\n");
+      "scene.materials.a.doublesided = true\n");
   EXPECT_TRUE(scene.textures.empty());
   const Material& a = scene.materials.at(0);
   EXPECT_EQ(input_of(a, "kd").constant, (Vec3{0.5f, 0.25f, 0.125f}));
@@ -70,7 +70,7 @@ TEST(SdlMaterial, ConstantsTexturesAndColourSpaces) {
   // A colour as a number is its luminance: LuxCore's mix with amount .2 .4 .8 shows 0.38635.
   EXPECT_THAT(input_of(a, "vroughness").constant.x,
               FloatEq(0.212671f * 0.5f + 0.715160f * 0.25f + 0.072169f * 0.125f));
-  EXPECT_EQ(number_of(a, "multibounce"), 1);
+  EXPECT_EQ(number_of(a, "doublesided"), 1);
 }
 
 TEST(SdlMaterial, PropertiesWithoutEffectAreAccepted) {
@@ -338,7 +338,7 @@ TEST(Canonical, EveryChangedValueChangesTheMaterialText) {
   for (const char* change :
        {"scene.textures.base.octaves = 7\n", "scene.textures.base.roughness = 0.50001\n",
         "scene.textures.base.mapping.transformation = 1 0 0 0 0 1 0 0 0 0 1 0 0 0 1e-9 1\n",
-        "scene.materials.coat.ks = 0.0400001\n", "scene.materials.coat.multibounce = 1\n",
+        "scene.materials.coat.ks = 0.0400001\n", "scene.materials.coat.doublesided = 1\n",
         "scene.materials.rest.kd = base\n", "scene.materials.rest.type = mirror\n",
         "scene.materials.body.amount = 0.5000001\n", "scene.materials.body.material2 = coat\n",
         "scene.materials.body.emission = 1\n"})

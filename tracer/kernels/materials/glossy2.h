@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A matte base kd under a rough dielectric coat of reflectance ks at normal incidence (or of
-// refractive index `index` where that is not 0), with absorption ka over depth d in the coat. On
-// both sides.
+// refractive index `index` where that is not 0), with absorption ka over depth d in the coat. Without
+// `doublesided` the back, which the true normals point away from, has no coat.
 //
 // The coat is GGX with Schlick's Fresnel, and what comes back after several reflections among its
 // facets (microfacet.h). What the coat does not reflect lights the base (Kelemen and Szirmay-Kalos
@@ -23,10 +23,8 @@
   INPUT(glossy2_ka, 3, 0.0f)         \
   INPUT(glossy2_d, 1, 0.0f)          \
   INPUT(glossy2_index, 1, 0.0f)
-#define DS_GLOSSY2_NUMBERS(NUMBER)  \
-  NUMBER(glossy2_multibounce, 0.0f) \
-  NUMBER(glossy2_doublesided, 0.0f)
-enum { DS_GLOSSY2_INPUTS(DS_SLOT) glossy2_end };
+#define DS_GLOSSY2_NUMBERS(NUMBER) NUMBER(glossy2_doublesided, 0.0f)
+enum { DS_GLOSSY2_INPUTS(DS_SLOT) DS_GLOSSY2_NUMBERS(DS_NUMBER_SLOT) glossy2_end };
 enum {
   glossy2_traits = k_trait_lobes | k_trait_casts_caustics | k_trait_receives_caustics,
   glossy2_children = 0
@@ -43,6 +41,11 @@ enum {
   glossy2_first = glossy2_passed_mean + 3,  ///< probability of sampling the coat's first reflection
   glossy2_derived
 };
+
+/// Where the viewer sees the base without a coat.
+DS_FN mask glossy2_is_bare(const real* p, Viewer viewer) {
+  return !viewer.outside & (p[glossy2_doublesided] == 0.0f);
+}
 
 DS_FN real3 glossy2_normal_reflectance(const real* p) {
   const real index = p[glossy2_index];
@@ -124,7 +127,8 @@ DS_FN void glossy2_prepare(const real* p, Viewer viewer, real* derived) {
   put3(derived, glossy2_again, c.again_fresnel);
   put3(derived, glossy2_passed_out, passed);
   put3(derived, glossy2_passed_mean, glossy2_mean_passed(c));
-  derived[glossy2_first] = glossy2_lobe_probability(p, c, passed, viewer.wo);
+  derived[glossy2_first] = choose(glossy2_is_bare(p, viewer), (real)(0.0f),
+                                  glossy2_lobe_probability(p, c, passed, viewer.wo));
 }
 
 DS_FN Coat glossy2_coat(const real* p) {
@@ -154,13 +158,16 @@ DS_FN real3 glossy2_base(const real* p, Coat c, real3 wo, real3 wi) {
 }
 
 /// All lobes at wi, which is above the surface.
-DS_INLINED BsdfValue glossy2_all(const real* p, Coat c, real3 wo, real3 wi) {
+DS_INLINED BsdfValue glossy2_all(const real* p, Viewer viewer, Coat c, real3 wi) {
+  const real3 wo = viewer.wo;
   const real3 h = half_vector(wo, wi);
   const Lobe lobe = ggx_lobe(c.roughness, wo, wi, h);
   BsdfValue v;
   v.value =
       add_scaled(glossy2_base(p, c, wo, wi), schlick_fresnel(c.ks, dot(wo, h)), lobe.specular);
   v.value = add_scaled(v.value, c.again_fresnel, rescattered(c.again, wo, wi));
+  const real3 bare = scale(input3(p, glossy2_kd), wi.z * DS_INV_PI);
+  v.value = choose(glossy2_is_bare(p, viewer), bare, v.value);
   const real first = (p + glossy2_end)[glossy2_first];
   v.pdf = first * lobe.pdf + (1.0f - first) * wi.z * DS_INV_PI;
   return v;
@@ -168,7 +175,7 @@ DS_INLINED BsdfValue glossy2_all(const real* p, Coat c, real3 wo, real3 wi) {
 
 DS_FN BsdfValue glossy2_evaluate(const real* p, Viewer viewer, real3 wi) {
   const mask above = wi.z > 0.0f;
-  BsdfValue v = glossy2_all(p, glossy2_coat(p), viewer.wo, choose(above, wi, viewer.wo));
+  BsdfValue v = glossy2_all(p, viewer, glossy2_coat(p), choose(above, wi, viewer.wo));
   v.value = choose(above, v.value, splat((real)(0.0f)));
   v.pdf = choose(above, v.pdf, (real)(0.0f));
   return v;
@@ -181,7 +188,7 @@ DS_FN BsdfSample glossy2_sample(const real* p, Viewer viewer, real2 u, real2 lob
   const real3 mirrored = reflect_about(viewer.wo, ggx_visible_normal(c.roughness, viewer.wo, u));
   s.wi = choose(s.glossy, mirrored, cosine_hemisphere(u));
   s.valid = s.wi.z > 0.0f;
-  const BsdfValue v = glossy2_all(p, c, viewer.wo, choose(s.valid, s.wi, viewer.wo));
+  const BsdfValue v = glossy2_all(p, viewer, c, choose(s.valid, s.wi, viewer.wo));
   s.pdf = v.pdf;
   s.weight = scale(v.value, 1.0f / greater(v.pdf, (real)(1e-20f)));
   return s;

@@ -13,7 +13,7 @@
   INPUT(metal2_uroughness, 1, 0.1f) \
   INPUT(metal2_vroughness, 1, 0.1f)
 #define DS_METAL2_NUMBERS(NUMBER)
-enum { DS_METAL2_INPUTS(DS_SLOT) metal2_end };
+enum { DS_METAL2_INPUTS(DS_SLOT) DS_METAL2_NUMBERS(DS_NUMBER_SLOT) metal2_end };
 enum { metal2_traits = k_trait_lobes | k_trait_casts_caustics, metal2_children = 0 };
 /// What is derived; see Rescattering.
 enum {
