@@ -6,6 +6,7 @@
 #include "tracer/scene/type_tables.h"
 
 #include <string>
+#include <utility>
 
 namespace ds::gpu {
 namespace {
@@ -111,6 +112,23 @@ Picture of_environment(const std::filesystem::path& assets, const char* name) {
   return {name, std::move(scene), camera, engine};
 }
 
+/// The picture of everything in the ways that change no bit (tests/render/same_bits_test.cc).
+std::vector<Case> other_ways() {
+  const std::pair<const char*, void (*)(TracerOptions&)> ways[] = {
+      {"way-groups-of-256", [](TracerOptions& o) { o.work_group_size = 256; }},
+      {"way-5-pixels-an-item", [](TracerOptions& o) { o.item_pixels = 5; }},
+      {"way-bvh-of-width-2", [](TracerOptions& o) { o.bvh_width = 2; }},
+      {"way-full-program", [](TracerOptions& o) { o.full_program = true; }},
+      {"way-4-lanes", [](TracerOptions& o) { o.lanes = o.item_pixels = 4; }}};
+  std::vector<Case> cases;
+  for (const auto& [name, change] : ways) {
+    cases.push_back({all_effects().back()});
+    cases.back().picture.name = name;
+    cases.back().change = change;
+  }
+  return cases;
+}
+
 }  // namespace
 
 std::vector<Case> all_cases(const std::filesystem::path& assets) {
@@ -130,13 +148,17 @@ std::vector<Case> all_cases(const std::filesystem::path& assets) {
   cases.back().picture.engine.target = ErrorTarget{0.02, 48, cases.back().picture.scene.tone_map};
   for (const char* name : {"office", "outdoor", "studio"})
     cases.push_back({of_environment(assets, name), Traces::picture, true});
-  for (std::size_t i = cases.size() - 3, end = cases.size(); i < end; ++i) {
+  const std::size_t environments_end = cases.size();
+  for (std::size_t i = environments_end - 3; i < environments_end; ++i) {
     Case geometry = cases[i];
     geometry.picture.name += "-geometry";
     geometry.picture.engine.width = geometry.picture.engine.height = 1024;
     geometry.traces = Traces::geometry;
     cases.push_back(std::move(geometry));
   }
+  // Behind the other pictures: a GPU takes half a minute to compile the program of four lanes.
+  for (Case& way : other_ways())
+    cases.push_back(std::move(way));
   return cases;
 }
 

@@ -3,6 +3,7 @@
 // (ci/gpu; recorder.h says what a pack is):
 //
 //   gpu_pack FOLDER ASSETS [CASE...]
+//   gpu_pack --list ASSETS             names the cases of pictures
 //
 // All cases, or those named. They are traced on this machine's first CPU device as GPUs are asked
 // to: one path a work-item, groups of 64.
@@ -19,6 +20,7 @@
 #include <cstdio>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ds {
@@ -130,6 +132,11 @@ void record_ray_cases(Wanted& wanted) {
 }
 
 void run(std::span<char*> arguments) {
+  if (arguments.size() == 3 && std::string_view(arguments[1]) == "--list") {
+    for (const gpu::Case& one : gpu::all_cases(arguments[2]))
+      fmt::print("{}\n", one.picture.name);
+    return;
+  }
   if (arguments.size() < 3) fail(ErrorKind::usage, "wanted FOLDER ASSETS [CASE...]");
   Wanted wanted(arguments.subspan(3));
   Tracer tracer(as_on_a_gpu());
@@ -137,7 +144,14 @@ void run(std::span<char*> arguments) {
   for (const gpu::Case& one : gpu::all_cases(arguments[2]))
     if (wanted.take(one.picture.name)) {
       fmt::print(stderr, "{}\n", one.picture.name);
-      record(tracer, one);
+      if (!one.change) {
+        record(tracer, one);
+        continue;
+      }
+      TracerOptions options = as_on_a_gpu();
+      one.change(options);
+      Tracer changed(options);
+      record(changed, one);
     }
   record_ray_cases(wanted);
   wanted.check_all_taken();

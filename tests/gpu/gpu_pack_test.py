@@ -59,6 +59,14 @@ class Pack(unittest.TestCase):
         return [(m.group(0), int(m.group(1)), int(m.group(2)))
                 for m in re.finditer(r"^read \d+ (\d+) \w{16} (\d+) .*$", inside, re.M)]
 
+    def test_every_kind_has_a_case(self):
+        names = subprocess.run([BUILD / "gpu_pack", "--list", SOURCE / "assets"], capture_output=True, text=True,
+                               check=True).stdout.split()
+        for kind in ("material", "texture", "light"):
+            headers = (SOURCE / "tracer/kernels" / f"{kind}s").glob("*.h")
+            self.assertEqual(sorted(n for n in names if n.startswith(f"{kind}-")),
+                             sorted(f"{kind}-{header.stem}" for header in headers))
+
     def test_all_are_equal_and_nothing_is_left(self):
         before = sorted(p.name for p in self.folder.rglob("*"))
         code, out, err = self.run_pack()
