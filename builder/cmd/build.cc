@@ -34,6 +34,7 @@ nlohmann::json to_json(const BuildResult& result, const Dataset& dataset) {
           {"reused", result.reused},
           {"failed", result.failed},
           {"not_reached", result.not_reached},
+          {"removed_files", result.removed_files},
           {"traced", result.traced},
           {"developed", result.developed},
           {"traced_samples", result.traced_samples},
@@ -69,7 +70,12 @@ void print_result(const BuildResult& result, const Dataset& dataset) {
   std::string text =
       fmt::format("{}: {} images: {} built, {} reused, {} failed", dataset.recipe.name,
                   result.images, result.built, result.reused, result.failed);
-  if (result.not_reached > 0) text += fmt::format(", {} not reached", result.not_reached);
+  if (result.not_reached > 0)
+    text += fmt::format(", {} not reached{}", result.not_reached,
+                        result.stopped ? "" : " (-k makes what can be made)");
+  if (result.removed_files > 0)
+    text += fmt::format(", {} file{} removed that no image of the recipe has",
+                        result.removed_files, result.removed_files == 1 ? "" : "s");
   text += fmt::format(", in {:.1f} s", result.seconds);
   if (result.traced_samples > 0)
     text += fmt::format("; {} traced on {}", format_samples(result.traced_samples), result.device);

@@ -233,6 +233,7 @@ void Execution::remove_left_over() {
     }
     folders.insert((dataset_.folder / path).parent_path());
   }
+  result_.removed_files = removed.size();
   std::error_code not_empty;
   for (const fs::path& folder : folders)
     fs::remove(folder, not_empty);

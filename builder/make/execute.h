@@ -28,6 +28,7 @@ struct BuildResult {
   std::uint64_t reused = 0;  ///< every file was there
   std::uint64_t failed = 0;
   std::uint64_t not_reached = 0;     ///< stopped before, by the user or by another's failure
+  std::uint64_t removed_files = 0;   ///< of the shard's images that the recipe has no more
   std::uint64_t traced = 0;          ///< of the built: something was traced
   std::uint64_t developed = 0;       ///< of the built: a picture was made from a film
   std::uint64_t traced_samples = 0;  ///< camera samples, over all pixels

@@ -29,6 +29,15 @@ class StaleTest(TinyCase):
         self.assert_counts(self.build(), built=IMAGES // 2, reused=IMAGES // 2)
         self.assertEqual(self.run_it("verify", self.out).code, 0)
 
+    def test_a_build_says_how_many_files_it_removes(self):
+        self.build()
+        files = set(self.contents(self.out / "images"))
+        out = self.run_it("build", self.tiny / "recipe.toml", "-o", self.out, "--set", "camera.views=[0]").out
+        gone = files - set(self.contents(self.out / "images"))
+        self.assertEqual(len(gone), len(files) * 3 // 4)  # one view of four stays
+        self.assertIn(f", {len(gone)} files removed that no image of the recipe has", out)
+        self.assertEqual(self.build()["removed_files"], 0)
+
     def test_colours_count_where_a_material_reads_them(self):
         model = self.tiny / "models/tetra.ply"
         plain = model.read_text()
