@@ -74,8 +74,8 @@ void print_result(const BuildResult& result, const Dataset& dataset) {
     text += fmt::format(", {} not reached{}", result.not_reached,
                         result.stopped ? "" : " (-k makes what can be made)");
   if (result.removed_files > 0)
-    text += fmt::format(", {} file{} removed that no image of the recipe has",
-                        result.removed_files, result.removed_files == 1 ? "" : "s");
+    text += fmt::format(", {} file{} removed that no image of the recipe has", result.removed_files,
+                        result.removed_files == 1 ? "" : "s");
   text += fmt::format(", in {:.1f} s", result.seconds);
   if (result.traced_samples > 0)
     text += fmt::format("; {} traced on {}", format_samples(result.traced_samples), result.device);
