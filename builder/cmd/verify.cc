@@ -101,7 +101,9 @@ void print_findings(const VerifyResult& result, bool all) {
 int run_verify(const Arguments& arguments) {
   VerifyResult result = verify_files(dataset_folder(arguments.request()));
   std::string not_checked;
-  if (std::filesystem::is_directory(arguments.target))
+  if (!result.has_manifest)
+    not_checked = "the manifest cannot be read; the next build writes it anew";
+  else if (std::filesystem::is_directory(arguments.target))
     not_checked = verify_folder(result, arguments);
   else
     verify_dataset(result, arguments);

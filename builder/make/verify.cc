@@ -22,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* k_checksums = "manifest/checksums.xxh128";
+constexpr const char* k_images_manifest = "manifest/images.jsonl";
 
 void check_file(VerifyResult& result, const fs::path& folder, const FileRecord& wanted) {
   const fs::path file = folder / wanted.path;
@@ -100,28 +101,39 @@ std::vector<const FileRecord*> differing_files(const fs::path& folder,
   return differing;
 }
 
-/// The checksum file against itself and the manifest: it is what people without dsbuild check.
-void check_checksums(VerifyResult& result, const fs::path& folder,
-                     const std::map<std::string, Hash128>& listed) {
-  const auto add = [&](const std::string& path, const std::string& what) {
-    result.findings.push_back({Finding::Kind::manifest, path, what, ""});
-  };
-  const std::string sums_file = k_checksums;
+/// The lines of the checksum file; nothing, with a finding, where it is not there or damaged.
+std::optional<std::map<std::string, Hash128>> read_checksums(VerifyResult& result,
+                                                             const fs::path& folder) {
   std::error_code error;
   if (!fs::is_regular_file(folder / k_checksums, error)) {
     result.findings.push_back({Finding::Kind::missing, k_checksums, "the file is missing", ""});
-    return;
+    return std::nullopt;
   }
   std::map<std::string, Hash128> sums;
   std::istringstream lines(read_text_file(folder / k_checksums));
   for (std::string line; std::getline(lines, line);) {
     const std::optional<Hash128> hash = Hash128::from_hex(line.substr(0, 32));
     if (!hash || line.compare(32, 2, "  ") != 0) {
-      add(k_checksums, "a line is no checksum: " + line);
-      return;
+      result.findings.push_back(
+          {Finding::Kind::manifest, k_checksums, "a line is no checksum: " + line, ""});
+      return std::nullopt;
     }
     sums.emplace(line.substr(34), *hash);
   }
+  return sums;
+}
+
+/// The checksum file against the manifest: it is what people without dsbuild check.
+void check_checksums(VerifyResult& result, const fs::path& folder,
+                     const std::map<std::string, Hash128>& listed) {
+  const auto add = [&](const std::string& path, const std::string& what) {
+    result.findings.push_back({Finding::Kind::manifest, path, what, ""});
+  };
+  const auto known = read_checksums(result, folder);
+  if (!known) return;
+  const std::map<std::string, Hash128>& sums = *known;
+  const std::string sums_file = k_checksums;
+  std::error_code error;
   for (const auto& [path, hash] : listed) {
     const auto sum = sums.find(path);
     if (sum == sums.end())
@@ -142,7 +154,7 @@ void check_checksums(VerifyResult& result, const fs::path& folder,
 
 void find_extra(VerifyResult& result, const fs::path& folder,
                 const std::map<std::string, Hash128>& listed) {
-  const std::set<std::string> own{"manifest/images.jsonl", "manifest/dataset.json", k_checksums};
+  const std::set<std::string> own{k_images_manifest, "manifest/dataset.json", k_checksums};
   std::vector<std::string> extra;
   std::error_code error;
   fs::recursive_directory_iterator entry(folder, error);
@@ -238,6 +250,24 @@ std::map<std::string, ImageRecord> records_by_id(const fs::path& folder) {
   return records;
 }
 
+/// Where the manifest cannot be read, the files against the checksum file alone.
+void verify_by_checksums(VerifyResult& result, const fs::path& folder) {
+  const auto sums = read_checksums(result, folder);
+  if (!sums) return;
+  for (const auto& [path, hash] : *sums) {
+    if (path.starts_with("manifest/")) continue;
+    ++result.files;
+    std::error_code error;
+    if (!fs::is_regular_file(folder / path, error))
+      result.findings.push_back({Finding::Kind::missing, path, "the file is missing", ""});
+    else if (content_hash(folder / path) != hash)
+      result.findings.push_back({Finding::Kind::changed, path,
+                                 fmt::format("it has another checksum than {} says", k_checksums),
+                                 ""});
+  }
+  find_extra(result, folder, *sums);
+}
+
 }  // namespace
 
 const char* to_string(Finding::Kind kind) {
@@ -266,7 +296,17 @@ std::string to_text(const Finding& finding) {
 VerifyResult verify_files(const fs::path& folder) {
   VerifyResult result;
   std::map<std::string, Hash128> listed;
-  const std::vector<ImageRecord> images = read_images_manifest(folder);
+  std::vector<ImageRecord> images;
+  try {
+    images = read_images_manifest(folder);
+  } catch (const Error& error) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(folder / k_images_manifest, ignored)) throw;
+    result.has_manifest = false;
+    result.findings.push_back({Finding::Kind::manifest, k_images_manifest, error.what(), ""});
+    verify_by_checksums(result, folder);
+    return result;
+  }
   result.images = images.size();
   for (const ImageRecord& image : images)
     for (const FileRecord& file : image.files) {

@@ -34,11 +34,13 @@ const char* to_string(Finding::Kind kind);
 
 struct VerifyResult {
   std::uint64_t images = 0, files = 0, rerendered = 0;
+  bool has_manifest = true;  ///< that can be read; else the files are compared with their checksums
   std::vector<Finding> findings;
 };
 
 /// Reads every file under the folder and compares it with the manifest. Needs neither recipe nor
-/// database. Throws Error(asset) where there is no manifest or it is damaged.
+/// database. Throws Error(asset) where there is no manifest. Of a damaged one that is a finding, and
+/// the files are compared with the checksum file.
 VerifyResult verify_files(const std::filesystem::path& folder);
 
 /// Adds what only the recipe and the database can tell: images the manifest lacks or has too many

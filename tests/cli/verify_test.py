@@ -21,6 +21,24 @@ class VerifyTest(TinyCase):
         path.unlink()
         path.write_bytes(data)
 
+    def test_a_damaged_manifest_hides_no_damaged_picture(self):
+        self.build()
+        picture = self.out / "images/box.off/0.png"
+        os.chmod(picture.parent, 0o755)
+        picture.unlink()
+        picture.write_bytes(b"no picture")
+        manifest = self.out / "manifest/images.jsonl"
+        for text in manifest.read_text() + "{\n", manifest.read_text()[:100]:
+            manifest.unlink()
+            manifest.write_text(text)
+            run = self.run_it("verify", self.out, "--json")
+            self.assertEqual(run.code, 1, run)
+            found = {finding["path"]: finding["kind"] for finding in run.json["findings"]}
+            self.assertEqual(found, {"manifest/images.jsonl": "manifest", "images/box.off/0.png": "changed"})
+            self.assertIn("cannot be read", run.json["not_checked"])
+        self.build()
+        self.assertEqual(self.run_it("verify", self.out).code, 0)
+
     def test_a_whole_dataset(self):
         self.assertEqual(self.findings(), [])
         self.assertEqual(self.run_it("verify", self.recipe, "-o", self.out).code, 0)
