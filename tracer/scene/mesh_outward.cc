@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace ds {
@@ -122,10 +123,14 @@ void decide(std::span<const Vec3d> positions, std::span<const Triangle> all,
   }
 }
 
-}  // namespace
+/// Which of the triangles are of open surfaces, beside the report.
+struct Turned {
+  WindingReport report;
+  std::vector<std::uint32_t> open;
+};
 
-WindingReport turn_outwards(std::span<const Vec3d> positions, std::span<const std::uint32_t> welded,
-                            std::vector<Triangle>& triangles, std::span<const Triangle> flat) {
+Turned turn_closed(std::span<const Vec3d> positions, std::span<const std::uint32_t> welded,
+                   std::vector<Triangle>& triangles, std::span<const Triangle> flat) {
   const std::vector<Triangle> all = joined(triangles, flat);
   const EdgeGroups edges = group_edges(all, welded);
   Components components = find_components(all, welded, edges);
@@ -134,21 +139,49 @@ WindingReport turn_outwards(std::span<const Vec3d> positions, std::span<const st
     if (c.closed) measure(positions, all, components.side, c);
   decide(positions, all, components);
 
-  WindingReport report;
+  Turned found;
   for (const Component& c : components.list) {
     const bool mostly_turned = 2 * c.turned > c.triangles.size();
     for (const std::uint32_t t : c.triangles) {
       if (t >= triangles.size()) continue;
       const bool against = (components.side[t] != 0) != mostly_turned;
       if (!c.closed || c.volume == 0) {
-        report.against += against ? 1 : 0;
+        found.report.against += against ? 1 : 0;
+        if (!c.closed) found.open.push_back(t);
       } else if (against != c.turns_round) {
         std::swap(triangles[t][1], triangles[t][2]);
-        ++report.turned;
+        ++found.report.turned;
       }
     }
   }
-  return report;
+  return found;
+}
+
+bool has_three_places(const Triangle& t, std::span<const std::uint32_t> welded) {
+  const std::uint32_t a = welded[t[0]], b = welded[t[1]], c = welded[t[2]];
+  return a != b && b != c && c != a;
+}
+
+}  // namespace
+
+WindingReport turn_outwards(std::span<const Vec3d> positions, std::span<const std::uint32_t> welded,
+                            std::vector<Triangle>& triangles, std::span<const Triangle> flat) {
+  Turned exact = turn_closed(positions, welded, triangles, flat);
+  if (exact.open.empty()) return exact.report;
+  const std::vector<std::uint32_t> near = weld_seams(positions);
+  if (std::equal(near.begin(), near.end(), welded.begin(), welded.end())) return exact.report;
+  std::sort(exact.open.begin(), exact.open.end());
+  std::erase_if(exact.open, [&](std::uint32_t t) { return !has_three_places(triangles[t], near); });
+  std::vector<Triangle> open, thin;
+  for (const std::uint32_t t : exact.open)
+    open.push_back(triangles[t]);
+  std::copy_if(flat.begin(), flat.end(), std::back_inserter(thin),
+               [&](const Triangle& t) { return has_three_places(t, near); });
+  const Turned again = turn_closed(positions, near, open, thin);
+  if (again.open.size() == open.size()) return exact.report;
+  for (std::size_t i = 0; i < open.size(); ++i)
+    triangles[exact.open[i]] = open[i];
+  return {exact.report.turned + again.report.turned, again.report.against};
 }
 
 }  // namespace ds

@@ -26,6 +26,9 @@ struct WindingReport {
 /// out as a whole is the same as the file. (A thousand surfaces of each winding, the largest, are
 /// looked at as the outermost one.)
 ///
+/// Where a surface is open because places along a seam differ in their last digits, it is looked at
+/// again with these welded (weld_seams).
+///
 /// `welded`: weld's of `positions`. `flat`: triangles without area that may join others over a
 /// T-shaped contact; they have three places for corners. Sums in double, in the order of the
 /// triangles.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <utility>
 
 namespace ds {
@@ -52,6 +53,26 @@ std::vector<std::uint32_t> weld(std::span<const Vec3d> positions) {
   for (const Vec3d p : positions)
     keys.push_back(std::bit_cast<std::array<std::uint32_t, 6>>(p + Vec3d{0, 0, 0}));  // -0 -> 0
   return first_equal<6>(keys);
+}
+
+std::vector<std::uint32_t> weld_seams(std::span<const Vec3d> positions) {
+  constexpr double k_cells = 0x1p20;
+  Vec3d low = positions.empty() ? Vec3d{} : positions[0], high = low;
+  for (const Vec3d p : positions) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const Vec3d size = high - low;
+  const double longest = std::max({size.x, size.y, size.z});
+  const double scale = longest > 0 ? k_cells / longest : 0;
+  const auto cell = [&](double from_low) {
+    return static_cast<std::uint32_t>(std::lround(from_low * scale));
+  };
+  std::vector<std::array<std::uint32_t, 3>> keys;
+  keys.reserve(positions.size());
+  for (const Vec3d p : positions)
+    keys.push_back({cell(p.x - low.x), cell(p.y - low.y), cell(p.z - low.z)});
+  return first_equal<3>(keys);
 }
 
 EdgeGroups group_edges(std::span<const Triangle> triangles, std::span<const std::uint32_t> at) {

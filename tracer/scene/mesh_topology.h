@@ -23,6 +23,10 @@ std::vector<std::uint32_t> first_equal(std::span<const std::array<std::uint32_t,
 /// bits).
 std::vector<std::uint32_t> weld(std::span<const Vec3d> positions);
 
+/// The same for positions that fall into one cell of a grid of 2^-20 of the mesh's longest side:
+/// places that a program computed twice, as the two ends of a turn are, differ in their last digits.
+std::vector<std::uint32_t> weld_seams(std::span<const Vec3d> positions);
+
 /// Half-edge 3 t + k runs from corner k to corner (k + 1) % 3 of triangle t. Groups them by the
 /// edge they lie on, whichever way they run; `at` maps a vertex index to the vertex it counts as.
 struct EdgeGroups {

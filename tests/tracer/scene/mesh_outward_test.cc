@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 namespace ds {
@@ -99,6 +100,60 @@ TEST(TurnOutwards, CornersWrittenOnceAFaceAreOneSurface) {
     loose.triangles.push_back({first, first + 1, first + 2});
   }
   expect_becomes(reversed(loose), loose, 12);
+}
+
+/// As scripts write them: the last ring of the turn and the poles are computed anew, by sines that
+/// are 1e-16 and not 0.
+FileMesh sphere_with_seams(int rings, int sectors) {
+  constexpr double k_pi = std::numbers::pi;
+  FileMesh mesh;
+  for (int i = 0; i <= rings; ++i)
+    for (int j = 0; j <= sectors; ++j) {
+      const double polar = k_pi * i / rings, azimuth = 2 * k_pi * j / sectors;
+      mesh.positions.push_back({std::sin(polar) * std::cos(azimuth),
+                                std::sin(polar) * std::sin(azimuth), std::cos(polar)});
+    }
+  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(i * (sectors + 1) + j); };
+  for (int i = 0; i < rings; ++i)
+    for (int j = 0; j < sectors; ++j) {
+      if (i > 0) mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
+      mesh.triangles.push_back({at(i, j + 1), at(i + 1, j), at(i + 1, j + 1)});
+    }
+  return mesh;
+}
+
+TEST(TurnOutwards, SeamsThatDifferInTheLastDigitsAreClosed) {
+  const int rings = 12, sectors = 24;
+  const FileMesh right = sphere_with_seams(rings, sectors);
+  EXPECT_GT(volume(right), 4);  // 4 pi / 3, less what facets cut off
+  for (const bool in_part : {false, true}) {
+    FileMesh mesh = right;
+    for (std::size_t t = 0; t < mesh.triangles.size(); t += in_part ? 3 : 1)
+      std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+    const WindingReport report = turn(mesh);
+    EXPECT_EQ(report.against, 0U);
+    EXPECT_NEAR(volume(mesh), volume(right), 1e-12);
+    // The south pole's second triangles have a side of 1e-16; which way they run nobody sees.
+    EXPECT_GE(report.turned, in_part ? 160U : 504U);
+  }
+  // What is open stays as it is: the same without a strip from pole to pole.
+  FileMesh open = reversed(right);
+  std::erase_if(open.triangles,
+                [&](const auto& t) { return t[0] % static_cast<unsigned>(sectors + 1) == 5; });
+  const FileMesh before = open;
+  EXPECT_EQ(turn(open).turned, 0U);
+  EXPECT_EQ(open.triangles, before.triangles);
+}
+
+TEST(TurnOutwards, ThinBodiesAreNotWeldedShut) {
+  // A plate thinner than the grid that seams are welded on, and two sheets as near.
+  const FileMesh plate = box({0, 0, 0}, {1, 1, 1e-8});
+  expect_becomes(reversed(plate), plate, 12);
+  FileMesh sheets = box({0, 0, 0}, {1, 1, 1e-8});
+  sheets.triangles.resize(4);
+  const auto before = sheets.triangles;
+  EXPECT_EQ(turn(sheets).turned, 0U);
+  EXPECT_EQ(sheets.triangles, before);
 }
 
 TEST(TurnOutwards, EachOfSeveralBodies) {
