@@ -209,6 +209,7 @@ TEST_P(Bsdf, MakesNoEnergy) {
 }
 
 TEST_P(Bsdf, IsReciprocal) {
+  bool has_value = false;
   for (int trial = 0; trial < 5000; ++trial) {
     std::vector<float> p = materials::inputs(GetParam(), trial % 2 == 0 ? 0.1f : 0.6f);
     Viewer a = materials::viewer(0.02 + 0.98 * double{number()});
@@ -218,7 +219,40 @@ TEST_P(Bsdf, IsReciprocal) {
     const double there = double{evaluate(p, a, wi).value.y} / double{wi.z};
     const double back = double{evaluate(p, b, a.wo).value.y} / double{a.wo.z};
     EXPECT_NEAR(there, back, 1e-4 * (there + back) + 1e-7);
+    has_value = has_value || there > 0;
   }
+  EXPECT_EQ(has_value, !is_specular(materials::inputs(GetParam(), 0.1f)));
+}
+
+// A Dirac lobe has no value to compare: the way back is sampled instead. It leads to where the way
+// there came from, with the same share of light but for the change of radiance in refraction, which
+// it undoes.
+TEST_P(Bsdf, DiracLobesLeadBack) {
+  int refracted = 0, seen = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const std::vector<float> p = materials::inputs(GetParam(), 0.1f);
+    const Viewer a = materials::viewer(0.1 + 0.9 * double{number()}, number() < 0.5f);
+    const real2 u = {number(), number()}, lobe = {number() < 0.5f ? 0.0f : 0.9999f, number()};
+    const BsdfSample there = GetParam().sample(p.data(), a, u, lobe);
+    if (!there.valid || !there.specular) continue;
+    ++seen;
+    const float side = there.wi.z < 0 ? -1.0f : 1.0f;  // of the frame on the other side
+    if (std::fabs(there.wi.z) < 0.05f) continue;
+    refracted += side < 0 ? 1 : 0;
+    Viewer b = a;
+    b.wo = vec(there.wi.x, there.wi.y, side * there.wi.z);
+    b.outside = side < 0 ? !a.outside : a.outside;
+    const BsdfSample back = GetParam().sample(p.data(), b, u, lobe);
+    ASSERT_TRUE(back.valid && back.specular);
+    EXPECT_NEAR(back.wi.x, a.wo.x, 1e-5);
+    EXPECT_NEAR(back.wi.y, a.wo.y, 1e-5);
+    EXPECT_NEAR(side * back.wi.z, a.wo.z, 1e-5);
+    EXPECT_NEAR(there.eta_scale * back.eta_scale, 1, 1e-5);
+    EXPECT_NEAR(there.weight.y / there.eta_scale, back.weight.y / back.eta_scale, 1e-5);
+  }
+  const bool is_glass = GetParam().name == "glass";
+  EXPECT_EQ(seen > 0, is_glass || GetParam().name == "mirror" || GetParam().name == "mix");
+  EXPECT_EQ(refracted > 0, is_glass);
 }
 
 // What the host takes from a header's traits is what its functions do.
