@@ -35,9 +35,9 @@ struct ImageKeys {
   std::vector<OutputFile> outputs;
 };
 
-/// Makes keys, and keeps the texts they are hashes of. What images of one kind share (the traced program's text, canonical texts, their
-/// hashes) is made once a kind: 25,000 images take a fraction of a second. Needs no OpenCL device.
-/// Everything it refers to must outlive it.
+/// Makes keys, and keeps the texts they are hashes of. What images of one kind share (the traced
+/// program's text, canonical texts, their hashes) is made once a kind: 25,000 images take a
+/// fraction of a second. Needs no OpenCL device. Everything it refers to must outlive it.
 class KeyMaker {
  public:
   KeyMaker(const Recipe& recipe, Inputs& inputs, TextSet& texts);

@@ -14,8 +14,8 @@
 //   BsdfSample NAME_sample(const real* p, Viewer viewer, real2 u, real2 lobe)
 //   natural    NAME_child(const real* p, mask outside, mask here, real* choice)
 //
-// `p` holds the inputs' values at the surface point, behind them the numbers, and from NAME_end on what was derived. No
-// material returns NaN or a negative number for any input in range.
+// `p` holds the inputs' values at the surface point, behind them the numbers, and from NAME_end on
+// what was derived. No material returns NaN or a negative number for any input in range.
 #pragma once
 
 #include "tracer/kernels/sampler.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The packed scene that host and device share. Only 4-byte scalars: no layout can differ. Tables are arrays of
-// 4-byte words, floats or the bits of an unsigned number; the constants below are word offsets.
+// The packed scene that host and device share. Only 4-byte scalars: no layout can differ. Tables are
+// arrays of 4-byte words, floats or the bits of an unsigned number; the constants below are word
+// offsets.
 #pragma once
 
 #include "tracer/kernels/language.h"
@@ -63,7 +64,7 @@ enum {
   // first row is white, then comes one for each triangle.
   k_color_words = 12,
 
-  // A row of materials: a head, then the inputs.
+  // A row of materials: a head, then the inputs and the numbers.
   k_material_type = 0,
   k_material_program = 1,  ///< offset in programs of what evaluates textured inputs, or k_none
   k_material_child = 2,    ///< 2: rows of the materials it chooses among
