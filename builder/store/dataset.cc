@@ -8,7 +8,9 @@
 #include "tracer/base/hash_stream.h"
 #include "tracer/base/log.h"
 
+#include <algorithm>
 #include <random>
+#include <set>
 #include <sstream>
 
 namespace ds {
@@ -143,6 +145,22 @@ fs::path default_folder(const Recipe& recipe) {
   return here;
 }
 
+/// The folders beside the dataset's, which is not there yet, that belong to its recipe; in order.
+std::vector<fs::path> folders_beside(const Dataset& dataset) {
+  std::set<fs::path> folders;
+  for (const fs::path& above :
+       {dataset.folder.parent_path(), dataset.recipe.file.parent_path() / "out"}) {
+    std::error_code error;
+    for (fs::directory_iterator at(above, error), end; !error && at != end; at.increment(error)) {
+      const std::optional<Pointer> pointer = read_pointer(at->path(), true);
+      if (pointer && !pointer->recipe.empty() &&
+          belongs_to(*pointer, at->path(), dataset.recipe.file))
+        folders.insert(normal(at->path()));
+    }
+  }
+  return {folders.begin(), folders.end()};
+}
+
 fs::path folder_of(const DatasetRequest& request, const Recipe& recipe) {
   return request.output_folder.empty() ? default_folder(recipe) : normal(request.output_folder);
 }
@@ -164,7 +182,8 @@ void check_owner(const DatasetRequest& request, const fs::path& folder, const Re
   }
   fail(ErrorKind::usage,
        "{}: the folder belongs to the recipe {}, found {}; give this one a dataset.name of its own "
-       "or another folder (-o), or hand the folder over with build --adopt",
+       "or another folder (-o), or hand the folder over with build --adopt (plan --adopt says what "
+       "that would make)",
        folder.string(), owner.string(), recipe.file.string());
 }
 
@@ -294,11 +313,45 @@ Dataset open_folder(const DatasetRequest& request, Access access, Disk& disk) {
   return dataset;
 }
 
+bool names_dataset(const std::vector<std::string>& overrides) {
+  return std::any_of(overrides.begin(), overrides.end(), [](const std::string& assignment) {
+    return assignment.starts_with("dataset.name");
+  });
+}
+
+/// Says where the recipe's dataset lies that was built before it was given another name: the folder
+/// named after the new one is empty, and everything would be made again. Settings of a command line
+/// that bring their own name are a dataset beside it.
+void tell_of_older_name(const DatasetRequest& request, const Dataset& dataset, Disk& disk) {
+  if (names_dataset(request.overrides)) return;
+  for (const fs::path& folder : folders_beside(dataset)) {
+    DatasetRow row;
+    try {
+      row =
+          open_dataset({.target = folder, .overrides = {}, .output_folder = {}, .store_folder = {}},
+                       Access::records, disk)
+              .row;
+    } catch (const DamagedDatabase&) {
+      continue;  // it is mended by who works in it
+    } catch (const Error&) {
+      continue;
+    }
+    if (row.name == dataset.recipe.name || names_dataset(row.overrides)) continue;
+    warn(fmt::format(
+        "{0}: this recipe was built there as the dataset {1}; as {2} it has a folder of its own, "
+        "{3}, "
+        "where nothing is yet: to go on with what is made, give -o {0}, or move the folder there",
+        folder.string(), row.name, dataset.recipe.name, dataset.folder.string()));
+  }
+}
+
 Dataset open_recipe(const DatasetRequest& request, Access access, Disk& disk) {
   Dataset dataset;
   dataset.recipe = read_recipe(request.target, request.overrides);
   dataset.folder = folder_of(request, dataset.recipe);
   const std::optional<Pointer> known = read_pointer(dataset.folder);
+  if (!known && access != Access::inputs && request.output_folder.empty())
+    tell_of_older_name(request, dataset, disk);
   Pointer pointer = known.value_or(Pointer{new_id(), dataset.folder / k_state_folder, {}, {}});
   if (!request.store_folder.empty()) pointer.store = normal(request.store_folder);
   std::error_code error;

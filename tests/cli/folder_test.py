@@ -41,11 +41,13 @@ class FolderTest(TinyCase):
         for verb in (["build"], ["plan"], ["status"], ["build", "-n"], ["verify"]):
             run = self.run_it(*verb, other, "-o", self.out)
             self.assertEqual(run.code, 2, run)
-            for said in (str(self.recipe), str(other), "-o", "dataset.name", "--adopt"):
+            for said in (str(self.recipe), str(other), "-o", "dataset.name", "plan --adopt"):
                 self.assertIn(said, run.err)
         self.assertEqual(self.contents(), files)
         self.assertEqual(self.run_it("models", other).code, 0, "this is not about the folder")
         self.assert_counts(self.build(), reused=IMAGES)
+        run = self.run_it("plan", other, "-o", self.out, "--adopt")
+        self.assertIn(f"{IMAGES} up to date", run.out)
         run = self.run_it("build", other, "-o", self.out, "--adopt")
         self.assertEqual(run.code, 0, run)
         self.assertEqual(self.run_it("build", other, "-o", self.out).code, 0, "it is the other one's now")
@@ -121,6 +123,30 @@ class FolderTest(TinyCase):
         shutil.rmtree(self.folder / "elsewhere/.dsbuild")
         said = self.at(self.tiny, "status", "recipe.toml", "-o", self.folder / "elsewhere").stdout
         self.assertIn("a manifest lies there without its .dsbuild", said)
+
+    def test_a_dataset_of_another_name_is_told_of(self):
+        self.at(self.tiny, "build", "recipe.toml")
+        self.edit("recipe.toml", 'name = "tiny"', 'name = "small"')
+        before = f"{self.tiny}/out/tiny"
+        for verb in ("plan", "status", "build"):
+            said = self.at(self.tiny, verb, "recipe.toml").stderr
+            self.assertEqual(said.count("built there as the dataset tiny"), 1, said)
+            self.assertIn(f"give -o {before}", said)
+            self.assertIn(f"{self.tiny}/out/small", said)
+        self.assertNotIn("built there", self.at(self.tiny, "plan", "recipe.toml").stderr, "it has both now")
+        # What it says to do keeps all that is made.
+        run = self.at(self.tiny, "plan", "recipe.toml", "-o", before)
+        self.assertIn(f"0 to make (0 to trace, 0 to develop, 0 to take from the store), {IMAGES} up to date", run.stdout)
+        self.assertIn("name: tiny -> small", run.stdout)
+        shutil.rmtree(self.tiny / "out/small")
+        os.rename(before, self.tiny / "out/small")
+        run = self.at(self.tiny, "build", "recipe.toml")
+        self.assertIn(f"0 built, {IMAGES} reused", run.stdout)
+        self.assertNotIn("built there", run.stderr)
+        # A name for one command is a dataset beside it, whichever comes first.
+        self.assertNotIn("built there", self.at(self.tiny, "build", "recipe.toml", "--set", "dataset.name=b").stderr)
+        shutil.rmtree(self.tiny / "out/small")
+        self.assertNotIn("built there", self.at(self.tiny, "plan", "recipe.toml").stderr)
 
     def test_files_that_no_build_made_are_not_written_over(self):
         for name in ("images/box.off/0.png", "manifest/dataset.json"):
