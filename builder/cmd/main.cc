@@ -1,16 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/arguments.h"
+#include "builder/cmd/error_text.h"
+#include "builder/cmd/plan_text.h"
 #include "builder/cmd/stop_signal.h"
 #include "builder/db/sqlite.h"
 #include "tracer/base/error.h"
 #include "tracer/base/streams.h"
 
+#include <algorithm>
 #include <csignal>
 #include <exception>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 namespace {
+
+/// Also where the command line is wrong: who reads the answer by a program is to learn that so.
+void answer_error(std::span<const char* const> words, const std::exception& error) {
+  const auto is_json = [](const char* word) { return std::string_view(word) == "--json"; };
+  if (std::any_of(words.begin(), words.end(), is_json)) ds::print_json(ds::error_json(error));
+}
 
 void print_error(const std::string& message) {
   std::istringstream lines(message);
@@ -22,16 +32,19 @@ int run(std::span<const char* const> arguments) {
   try {
     return ds::run_command_line(arguments);
   } catch (const ds::DamagedDatabase& error) {
+    answer_error(arguments, error);
     print_error(error.what());
     print_error(
         "run dsbuild again: it sets the database aside and takes what was made from the store");
     return ds::exit_code(error.kind());
   } catch (const ds::Error& error) {
+    answer_error(arguments, error);
     // That the user stopped it, the user knows.
     if (error.kind() != ds::ErrorKind::cancelled || !ds::stopped_by_signal())
       print_error(error.what());
     return ds::exit_code(error.kind());
   } catch (const std::exception& error) {
+    answer_error(arguments, error);
     print_error(error.what());
     return 1;
   }

@@ -101,7 +101,9 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
           ->type_name("NAME");
       return;
     case Option::json:
-      verb.add_flag("--json", to.json, "the last line of standard output is one JSON object");
+      verb.add_flag("--json", to.json,
+                    "the last line of standard output is one JSON object: the answer, or where "
+                    "there is none the error (error, kind, failures with file and line)");
       return;
     case Option::dry_run:
       verb.add_flag("-n,--dry-run", to.dry_run, "only say what would be made");

@@ -39,6 +39,40 @@ class UsageTest(TinyCase):
             self.assertEqual((run.code, run.err), (2, ""), run)
             self.assertEqual(run.out, self.run_it("--help").out)
 
+    def test_an_error_is_an_answer_in_json(self):
+        self.edit("recipe.toml", "fov_deg = 49", "fov_deg = 490\nfovv = 1")
+        wrong = {
+            "usage": [[verb, "--json"] for verb in VERBS[:-3]] + [["log", "--json"], ["build", "--json", "--colour"],
+                      ["bulid", "--json"], ["--json"], ["devices", "--json", "all"], ["help", "--json"],
+                      ["plan", self.folder, "--json"], ["build", self.recipe, "--shard", "9/2", "--json"],
+                      ["-C", self.folder / "none", "status", self.recipe, "--json"]],
+            "recipe": [[verb, self.recipe, "--json"] for verb in VERBS if verb not in ("explain", "devices", "help")]
+                      + [["explain", self.recipe, "box.off/0", "--json"],
+                         ["status", self.folder / "none.toml", "--json"]]}
+        for kind, commands in wrong.items():
+            for command in commands:
+                run = self.run_it(*command)
+                self.assertEqual(run.code, 2, run)
+                self.assertEqual(len(run.out.splitlines()), 1, run)
+                self.assertEqual((run.json["kind"], run.json["exit_code"]), (kind, 2), run)
+                said = [line.removeprefix("dsbuild: error: ") for line in run.err.splitlines()]
+                self.assertEqual(run.json["error"].splitlines(), said)
+                self.assertEqual(len(run.json["failures"]), len(said))
+                self.assertEqual(self.run_it(*[word for word in command if word != "--json"]).out.count("{"), 0)
+        lines = self.recipe.read_text().splitlines()
+        failures = self.run_it("build", self.recipe, "--json").json["failures"]
+        self.assertEqual({(one["file"], lines[one["line"] - 1].split(" ")[0]) for one in failures},
+                         {(str(self.recipe), "fov_deg"), (str(self.recipe), "fovv")})
+        for one in failures:
+            self.assertEqual(one["what"], f"{one['file']}:{one['line']}:{one['column']}")
+            self.assertRegex(one["why"], "^camera.fov")
+        # What is no fault of a line, and no mistake of the command line.
+        self.edit("recipe.toml", "fov_deg = 490\nfovv = 1", "fov_deg = 49")
+        (self.folder / "file").write_text("in the way")
+        run = self.run_it("build", self.recipe, "-o", self.folder / "file/out", "--json")
+        self.assertEqual((run.code, run.json["kind"], run.json["exit_code"]), (1, "io", 1), run)
+        self.assertIsNone(run.json["failures"][0]["line"])
+
     def test_help_tells_types_and_keys(self):
         glass = self.run_it("help", "materials", "glass").out
         self.assertRegex(glass, r"interiorior +a number >= 0.01 or a texture's name \[1.5\]")
@@ -148,7 +182,7 @@ class UsageTest(TinyCase):
             self.assertEqual(run.code, 2, (arguments, str(run)))
             self.assertIn(message, run.err)
             self.assertEqual(run.err.count("\n"), 1, run)
-            self.assertEqual(run.out, "")
+            self.assertEqual(run.out.count("\n"), 1 if "--json" in arguments else 0, run)
 
     def test_one_mistake_in_a_recipe_is_one_error(self):
         whole = self.recipe.read_text()
