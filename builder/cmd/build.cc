@@ -44,6 +44,7 @@ nlohmann::json to_json(const BuildResult& result, const Dataset& dataset) {
           {"programs_compiled", result.programs.compiled},
           {"programs_ahead", result.programs.ahead},
           {"stopped", result.stopped},
+          {"disk_failed", result.disk_failed},
           {"concerns", to_json(result.concerns)},
           {"failures", failures},
           {"capped", capped},
@@ -72,7 +73,7 @@ void print_result(const BuildResult& result, const Dataset& dataset) {
                   result.images, result.built, result.reused, result.failed);
   if (result.not_reached > 0)
     text += fmt::format(", {} not reached{}", result.not_reached,
-                        result.stopped ? "" : " (-k makes what can be made)");
+                        result.stopped || result.disk_failed ? "" : " (-k makes what can be made)");
   if (result.removed_files > 0)
     text += fmt::format(", {} file{} removed that no image of the recipe has", result.removed_files,
                         result.removed_files == 1 ? "" : "s");

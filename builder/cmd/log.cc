@@ -2,8 +2,8 @@
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/progress.h"
 #include "builder/cmd/verbs.h"
+#include "builder/store/build_ending.h"
 #include "builder/store/dataset.h"
-#include "builder/store/killed_builds.h"
 #include "tracer/base/streams.h"
 
 namespace ds {
@@ -12,13 +12,13 @@ int run_log(const Arguments& arguments) {
   RealDisk disk;
   const Dataset dataset = open_dataset(arguments.request(), Access::records, disk);
   nlohmann::json array = nlohmann::json::array();
-  for (const BuildRow& build : dataset.database->builds(dataset.row.id)) {
-    const std::string outcome = was_killed(build) ? "killed" : build.outcome;
+  for (const BuildRow& logged : dataset.database->builds(dataset.row.id)) {
+    const BuildRow build = as_ended(dataset, logged);
     array.push_back({{"number", build.number},
                      {"started_at", build.started_at},
                      {"host", build.host},
                      {"device", build.device},
-                     {"outcome", outcome},
+                     {"outcome", build.outcome},
                      {"images", build.images},
                      {"built", build.built},
                      {"reused", build.reused},
@@ -27,8 +27,8 @@ int run_log(const Arguments& arguments) {
                      {"seconds", build.seconds}});
     if (!arguments.json)
       say(Stream::result,
-          "{} UTC  {:<8} {:>6} built {:>6} reused {:>4} failed {:>17} {:>9}  {} {}\n",
-          build.started_at, outcome, build.built, build.reused, build.failed,
+          "{} UTC  {:<11} {:>6} built {:>6} reused {:>4} failed {:>17} {:>9}  {} {}\n",
+          build.started_at, build.outcome, build.built, build.reused, build.failed,
           format_samples(build.traced_samples), format_duration(build.seconds), build.host,
           build.device);
   }

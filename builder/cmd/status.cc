@@ -3,8 +3,11 @@
 #include "builder/cmd/progress.h"
 #include "builder/cmd/verbs.h"
 #include "builder/plan/plan.h"
-#include "builder/store/killed_builds.h"
+#include "builder/store/build_ending.h"
 #include "tracer/base/streams.h"
+
+#include <algorithm>
+#include <optional>
 
 namespace ds {
 
@@ -18,6 +21,27 @@ std::string why_never(const Dataset& dataset) {
                      dataset.recipe.file.string());
 }
 
+std::uint64_t not_reached(const BuildRow& build) {
+  return build.images - std::min(build.images, build.built + build.reused + build.failed);
+}
+
+/// How the build ended, and what it left undone.
+std::string ending_text(const BuildRow& build) {
+  std::string text = build.outcome;
+  if (build.outcome == k_disk_failed) text += " (full, read only or broken)";
+  if (build.outcome == "killed") text += " before its end";
+  text += fmt::format(", {} built", build.built);
+  if (build.failed > 0) text += fmt::format(", {} failed", build.failed);
+  if (not_reached(build) > 0) text += fmt::format(", {} not reached", not_reached(build));
+  return text + ", " + format_duration(build.seconds);
+}
+
+nlohmann::json ending_json(const BuildRow& build) {
+  return {
+      {"outcome", build.outcome}, {"started_at", build.started_at},    {"built", build.built},
+      {"failed", build.failed},   {"not_reached", not_reached(build)}, {"seconds", build.seconds}};
+}
+
 }  // namespace
 
 int run_status(const Arguments& arguments) {
@@ -28,6 +52,8 @@ int run_status(const Arguments& arguments) {
   const Plan plan = make_plan(dataset, inputs, false, shard);
   const PlanCounts counts = count(plan);
   const std::vector<BuildRow> builds = dataset.database->builds(dataset.row.id);
+  std::optional<BuildRow> last;
+  if (!builds.empty()) last = as_ended(dataset, builds.front());
   const std::string store = dataset.store ? dataset.store->folder().string() : "";
   if (arguments.json) {
     nlohmann::json object = to_json(counts);
@@ -37,18 +63,17 @@ int run_status(const Arguments& arguments) {
     object["folder"] = dataset.folder.string();
     object["store"] = store;
     object["builds"] = builds.size();
+    object["last_build"] = last ? ending_json(*last) : nlohmann::json();
     print_json(object);
     return counts.failed > 0 ? 1 : 0;
   }
   say(Stream::result, "dataset  {}\nrecipe   {}\nfolder   {}\n", dataset.recipe.name,
       dataset.recipe.file.string(), dataset.folder.string());
   if (!store.empty()) say(Stream::result, "store    {}\n", store);
-  if (builds.empty())
-    say(Stream::result, "build    {}\n", why_never(dataset));
+  if (last)
+    say(Stream::result, "build    {} UTC, {}\n", last->started_at, ending_text(*last));
   else
-    say(Stream::result, "build    {} UTC, {}, {} built, {}\n", builds.front().started_at,
-        was_killed(builds.front()) ? "killed" : builds.front().outcome, builds.front().built,
-        format_duration(builds.front().seconds));
+    say(Stream::result, "build    {}\n", why_never(dataset));
   say(Stream::result, "{}\n", summary(counts));
   print_manifest_line(plan);
   return counts.failed > 0 ? 1 : 0;

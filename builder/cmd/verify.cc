@@ -5,6 +5,7 @@
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/stop_signal.h"
 #include "builder/cmd/verbs.h"
+#include "builder/store/build_ending.h"
 #include "tracer/base/streams.h"
 
 #include <filesystem>
@@ -32,6 +33,33 @@ void verify_dataset(VerifyResult& result, const Arguments& arguments) {
   const auto told = [](const std::string& id) { say(Stream::people, "tracing {} again\n", id); };
   verify_by_tracing(result, dataset, plan, inputs, *renderer, arguments.rerender, arguments.seed,
                     told, stop_on_signal());
+}
+
+/// How the last build of the folder ended where that was before its end, or it runs still: the
+/// manifest may then lag behind what lies there. Empty where it ended as it should, and where
+/// nothing is known of it.
+std::string unfinished_build(const std::filesystem::path& folder) {
+  try {
+    RealDisk disk;
+    const Dataset dataset =
+        open_dataset({.target = folder, .overrides = {}, .output_folder = {}, .store_folder = {}},
+                     Access::records, disk);
+    const std::vector<BuildRow> builds = dataset.database->builds(dataset.row.id);
+    if (builds.empty()) return "";
+    const std::string outcome = as_ended(dataset, builds.front()).outcome;
+    return outcome == "done" || outcome == "failed" || outcome == "stopped" ? "" : outcome;
+  } catch (const Error&) {  // what is to be said of it, the comparison says
+    return "";
+  }
+}
+
+void print_unfinished(const std::string& outcome) {
+  if (outcome.empty()) return;
+  say(Stream::result, "the last build {}: the manifest may be behind what lies in the folder{}\n",
+      outcome == "running"       ? "is still under way"
+      : outcome == k_disk_failed ? "was ended by its disk (full, read only or broken)"
+                                 : "was " + outcome + " before its end",
+      outcome == "running" ? "" : "; dsbuild build goes on");
 }
 
 /// Why the folder is not compared with its recipe, where that can be told beforehand.
@@ -99,7 +127,15 @@ void print_findings(const VerifyResult& result, bool all) {
 }  // namespace
 
 int run_verify(const Arguments& arguments) {
-  VerifyResult result = verify_files(dataset_folder(arguments.request()));
+  const std::filesystem::path folder = dataset_folder(arguments.request());
+  const std::string unfinished = unfinished_build(folder);
+  VerifyResult result;
+  try {
+    result = verify_files(folder);
+  } catch (const Error&) {
+    print_unfinished(arguments.json ? "" : unfinished);  // why there is no manifest yet
+    throw;
+  }
   std::string not_checked;
   if (!result.has_manifest)
     not_checked = "the manifest cannot be read; the next build writes it anew";
@@ -117,11 +153,13 @@ int run_verify(const Arguments& arguments) {
          {"files", result.files},
          {"rerendered", result.rerendered},
          {"differences", result.findings.size()},
+         {"unfinished_build", unfinished.empty() ? nlohmann::json() : nlohmann::json(unfinished)},
          {"not_checked", not_checked.empty() ? nlohmann::json() : nlohmann::json(not_checked)},
          {"findings", findings}});
   } else {
     print_findings(result, arguments.verbose);
     if (!not_checked.empty()) print_not_checked(not_checked);
+    print_unfinished(unfinished);
   }
   return result.findings.empty() ? 0 : 1;
 }

@@ -94,7 +94,8 @@ struct BuildRow {
   std::string host;
   std::int64_t process = 0;  ///< number on that host
   std::string device;
-  std::string outcome;  ///< "running" (or killed), "done", "failed", "stopped"
+  std::string
+      outcome;  ///< "running" (or killed), "done", "failed", "stopped", "killed", "disk failed"
   std::uint64_t images = 0, built = 0, reused = 0, failed = 0, traced_samples = 0;
   double seconds = 0;
 };

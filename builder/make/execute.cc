@@ -5,6 +5,7 @@
 #include "builder/plan/dataset_manifest.h"
 #include "builder/plan/manifest_state.h"
 #include "builder/plan/placed_files.h"
+#include "builder/store/build_ending.h"
 #include "builder/store/host.h"
 #include "builder/store/killed_builds.h"
 #include "tracer/base/disk_error.h"
@@ -82,10 +83,11 @@ class Execution {
   void begin();
   void finish();
   void remove_left_over();
+  const char* outcome() const;
   void log();
   /// Whether no further image is made.
   bool cut_short() const {
-    return stop_ || disk_failed_ || (result_.failed > 0 && !options_.keep_going);
+    return stop_ || result_.disk_failed || (result_.failed > 0 && !options_.keep_going);
   }
 
   Dataset& dataset_;
@@ -98,8 +100,7 @@ class Execution {
   BuildResult result_;
   std::unordered_set<const PlannedImage*> made_;              ///< by this build
   std::map<std::string, std::vector<std::string>> failures_;  ///< image ids by what went wrong
-  bool disk_failed_ = false;
-  std::string no_device_;  ///< why nothing can be traced
+  std::string no_device_;                                     ///< why nothing can be traced
   std::int64_t build_number_ = 0;
 };
 
@@ -128,6 +129,7 @@ bool Execution::anything_to_do() const {
 void Execution::begin() {
   if (build_number_ != 0) return;
   build_number_ = dataset_.database->begin_build(dataset_.row.id, host_name(), ::getpid());
+  make_room_for_ending(dataset_.folder);
 }
 
 /// Counts the shard's images and those that need nothing, enters failures, and returns what is to
@@ -176,7 +178,7 @@ bool Execution::make_one(const PlannedImage& image) {
     throw;
   } catch (const DiskFailed& error) {
     // What it refuses one image it refuses the rest: tracing them would be for nothing.
-    disk_failed_ = true;
+    result_.disk_failed = true;
     fail_image(image, error.what());
   } catch (
       const NoDevice& error) {  // said of the build, not of the image that happened to be first
@@ -341,16 +343,39 @@ void Execution::write_manifest(const ListedImages& images, ManifestSources sourc
   remember_manifest(dataset_, sources);
 }
 
+const char* Execution::outcome() const {
+  if (result_.disk_failed) return k_disk_failed;
+  if (result_.stopped) return "stopped";
+  return result_.failures.empty() ? "done" : "failed";
+}
+
 void Execution::log() {
   result_.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - options_.started).count();
-  Transaction transaction(dataset_.database->connection());
-  begin();
-  const char* outcome = result_.stopped ? "stopped" : result_.failures.empty() ? "done" : "failed";
-  dataset_.database->update_build({build_number_, "", "", 0, result_.device, outcome,
-                                   result_.images, result_.built, result_.reused, result_.failed,
-                                   result_.traced_samples, result_.seconds});
-  transaction.commit();
+  BuildRow row{0,
+               "",
+               "",
+               ::getpid(),
+               result_.device,
+               outcome(),
+               result_.images,
+               result_.built,
+               result_.reused,
+               result_.failed,
+               result_.traced_samples,
+               result_.seconds};
+  try {
+    Transaction transaction(dataset_.database->connection());
+    begin();
+    row.number = build_number_;
+    dataset_.database->update_build(row);
+    transaction.commit();
+  } catch (const DiskFailed& error) {
+    if (!result_.disk_failed) result_.failures.emplace_back("the log", error.what());
+    result_.disk_failed = true;
+    row.outcome = k_disk_failed;
+    keep_ending(dataset_.folder, row);
+  }
 }
 
 BuildResult Execution::run() {
@@ -362,15 +387,18 @@ BuildResult Execution::run() {
   result_.not_reached = result_.images - result_.built - result_.reused - result_.failed;
   result_.device = maker_.device();
   result_.programs = maker_.programs();
+  // The images made are recorded; the caller is to learn their counts too.
   try {
     finish();
-    log();
   } catch (const DamagedDatabase&) {
     throw;
+  } catch (const DiskFailed& error) {
+    result_.disk_failed = true;
+    result_.failures.emplace_back("the manifest", error.what());
   } catch (const Error& error) {
-    // The images made are recorded; the caller is to learn their counts too.
     result_.failures.emplace_back("the manifest", error.what());
   }
+  log();
   return result_;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/store/killed_builds.h"
 
+#include "builder/store/build_ending.h"
 #include "builder/store/host.h"
 
 #include <cerrno>
@@ -58,11 +59,10 @@ bool was_killed(const BuildRow& build) {
 
 void clean_up_killed_builds(Dataset& dataset, std::int64_t current) {
   bool any = false;
-  for (BuildRow build : dataset.database->builds(dataset.row.id)) {
+  for (const BuildRow& build : dataset.database->builds(dataset.row.id)) {
     if (build.number == current || !was_killed(build)) continue;
     any = true;
-    build.outcome = "killed";
-    dataset.database->update_build(build);
+    dataset.database->update_build(as_ended(dataset, build));
   }
   if (!any) return;
   remove_temporaries(dataset.folder / "images");

@@ -11,8 +11,8 @@ namespace ds {
 /// process is gone.
 bool was_killed(const BuildRow& build);
 
-/// Enters builds of the dataset whose process ended without saying so (kill -9, power cut) as
-/// "killed" in the log, and removes the half-written temporaries they left in the dataset's folder
+/// Enters builds of the dataset whose process ended without saying so (kill -9, power cut, full disk)
+/// as `as_ended` tells in the log, and removes the half-written temporaries they left in the dataset's folder
 /// and the store. `current` is the number of the build that asks. Costs nothing where none was
 /// killed.
 void clean_up_killed_builds(Dataset& dataset, std::int64_t current);

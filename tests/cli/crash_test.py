@@ -45,6 +45,29 @@ class CrashTest(TinyCase):
                 shutil.rmtree(self.out)
         self.check()
 
+    def test_a_killed_build_is_told_of(self):
+        self.build()
+        process = self.start("build", self.recipe, "-o", self.out, "--set", "engine.spp=6000")
+        placed = self.out / "images/box.off/0.png"
+        before = placed.stat().st_ino
+        while process.poll() is None and (not placed.exists() or placed.stat().st_ino == before):
+            time.sleep(0.005)
+        status = self.run_it("status", self.recipe, "-o", self.out, "--json").json["last_build"]
+        self.assertIn("is still under way", self.run_it("verify", self.out).out)
+        process.kill()
+        process.communicate()
+        self.assertEqual((status["outcome"], process.returncode), ("running", -9))
+        self.assertEqual(self.run_it("status", self.recipe, "-o", self.out, "--json").json["last_build"]["outcome"],
+                         "killed")
+        self.assertIn("UTC, killed before its end, ", self.run_it("status", self.recipe, "-o", self.out).out)
+        for target in ([self.out], [self.recipe, "-o", self.out]):
+            run = self.run_it("verify", *target)
+            self.assertIn("the last build was killed before its end: the manifest may be behind", run.out)
+            self.assertEqual(self.run_it("verify", *target, "--json").json["unfinished_build"], "killed")
+        self.build()
+        self.assertIsNone(self.run_it("verify", self.out, "--json").json["unfinished_build"])
+        self.assertNotIn("last build", self.run_it("verify", self.out).out)
+
     def test_two_processes_build_one_dataset(self):
         for _ in range(5):
             both = [self.start("build", self.recipe, "-o", self.out, "--json") for _ in range(2)]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Full disks and damaged files, through the real binary."""
+import json
 import os
 import resource
 import shutil
@@ -38,11 +39,14 @@ class FaultsTest(TinyCase):
     def test_a_full_file_system(self):
         # A file system of its own in a user namespace, where the machine lets us have one.
         script = ('mount -t tmpfs -o size=$1 tmpfs "$2" || exit 125; shift; folder=$1; shift; '
-                  '"$@" -o "$folder/out"; code=$?; mount -o remount,size=64m "$folder" || exit 125; '
-                  '"$@" -o "$folder/out" --json && cp -r "$folder/out" "$folder.copy"; exit $code')
+                  '"$@" -o "$folder/out" --json; code=$?; mount -o remount,size=64m "$folder" || exit 125; '
+                  '"$1" status "$3" -o "$folder/out" --json || exit 124; "$1" status "$3" -o "$folder/out" >&2; '
+                  '"$1" verify "$folder/out" >&2; "$1" log "$3" -o "$folder/out" >&2; '
+                  '"$@" -o "$folder/out" --json && "$1" status "$3" -o "$folder/out" --json && cp -r "$folder/out" "$folder.copy"; exit $code')
         small = self.folder / "small"
         small.mkdir()
-        for size in ("64k", "200k", "400k"):
+        endings = []
+        for size in ("64k", "200k", "300k", "400k"):
             run = subprocess.run(["unshare", "-rm", "sh", "-c", script, "sh", size, str(small),
                                   *self.command("build", self.recipe)],
                                  capture_output=True, text=True, cwd=self.folder, check=False)
@@ -50,8 +54,24 @@ class FaultsTest(TinyCase):
                 self.skipTest("no mount in a user namespace: " + run.stderr.strip())
             self.assertEqual(run.returncode, 1, run.stderr)
             self.assertRegex(run.stderr, "(?i)no space left|disk is full|disk i/o error")
+            told = [json.loads(line) for line in run.stdout.splitlines()]
+            before, built, after = told[-3:]
+            self.assertEqual(after["last_build"]["outcome"], "done")
+            self.assertEqual(built["failed"], 0)
             self.assertEqual(self.contents(self.folder / "small.copy"), self.wanted)
             shutil.rmtree(self.folder / "small.copy")
+            if before["last_build"] is None:  # there was no room for a database
+                continue
+            endings.append(before["last_build"]["outcome"])
+            self.assertEqual(endings[-1], "disk failed", run.stderr)
+            failed = told[0]
+            self.assertEqual(before["last_build"]["built"], failed["built"])
+            self.assertEqual(before["last_build"]["not_reached"], failed["not_reached"])
+            self.assertEqual((failed["disk_failed"], failed["seconds"] > 0), (True, True), failed)
+            self.assertIn("UTC, disk failed (full, read only or broken), ", run.stderr)
+            self.assertIn("the last build was ended by its disk", run.stderr)
+            self.assertIn("UTC  disk failed ", run.stderr)
+        self.assertTrue(endings)
 
     def test_damaged_objects_are_made_again(self):
         objects = [path for path in (self.out / ".dsbuild/objects").rglob("*") if path.is_file()]
