@@ -190,6 +190,9 @@ int run_build(const Arguments& arguments) {
   if (result.stopped)
     say(Stream::people, "dsbuild: stopped; what is finished is recorded, build again to go on\n");
   const std::size_t concerns = tell_concerns(result.concerns, dataset.recipe, arguments.strict);
+  if (const std::uint64_t others = result.failed + result.not_reached; others > 0)
+    say(Stream::people, "not looked at: {} of {} images, which are not made\n", others,
+        result.images);
   nlohmann::json told = to_json(result, dataset);
   told["lacking"] = to_json(all_lacking);
   if (arguments.json)

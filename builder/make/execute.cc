@@ -282,6 +282,7 @@ ListedImages Execution::look_at_images(PlacedFiles& placed, bool as_planned) {
     const bool known = as_planned && !image.elsewhere;
     const bool made = !image.error && (known || is_in_place(placed, image));
     (made ? images.made : images.lacking).push_back(&image);
+    if (!made && !image.error && (image.elsewhere || cut_short())) images.pending.push_back(&image);
   }
   return images;
 }

@@ -37,7 +37,7 @@ void look_at_image(std::vector<Concern>& concerns, const ImageFacts& image) {
 
 /// Of the class files, which the recipe has read.
 void look_at_labels(std::vector<Concern>& concerns, const Recipe& recipe,
-                    const std::vector<ImageFacts>& images) {
+                    const std::vector<ImageFacts>& images, const std::vector<ImageFacts>& pending) {
   Concern& absent = concern(concerns, "models_absent");
   absent = {absent.name, recipe.coverage.missing, recipe.coverage.listed,
             recipe.coverage.missing_examples};
@@ -46,11 +46,12 @@ void look_at_labels(std::vector<Concern>& concerns, const Recipe& recipe,
               recipe.coverage.unlisted_examples};
   // An image is of its class and of those above it.
   std::set<std::string, std::less<>> seen;
-  for (const ImageFacts& image : images) {
-    std::string_view path = image.class_path;
-    while (!path.empty() && seen.emplace(path).second)
-      path = path.substr(0, path.rfind('/') == path.npos ? 0 : path.rfind('/'));
-  }
+  for (const std::vector<ImageFacts>* list : {&images, &pending})
+    for (const ImageFacts& image : *list) {
+      std::string_view path = image.class_path;
+      while (!path.empty() && seen.emplace(path).second)
+        path = path.substr(0, path.rfind('/') == path.npos ? 0 : path.rfind('/'));
+    }
   Concern& empty = concern(concerns, "classes_empty");
   empty.of = recipe.class_paths.size();
   for (const std::string& path : recipe.class_paths)
@@ -58,14 +59,15 @@ void look_at_labels(std::vector<Concern>& concerns, const Recipe& recipe,
 }
 
 void look_at_splits(std::vector<Concern>& concerns, const Recipe& recipe,
-                    const std::vector<ImageFacts>& images) {
+                    const std::vector<ImageFacts>& images, const std::vector<ImageFacts>& pending) {
   const bool by_chance = recipe.split_test_fraction.has_value();
   Concern& empty = concern(concerns, "splits_empty");
   const auto look_at = [&](const char* split, bool wanted) {
     if (!wanted) return;
     ++empty.of;
-    if (std::none_of(images.begin(), images.end(),
-                     [&](const ImageFacts& image) { return image.split == split; }))
+    const auto is_of = [&](const ImageFacts& image) { return image.split == split; };
+    if (std::none_of(images.begin(), images.end(), is_of) &&
+        std::none_of(pending.begin(), pending.end(), is_of))
       add_example(empty, split);
   };
   look_at("train", by_chance || recipe.train_classes);
@@ -85,12 +87,13 @@ PixelCounts count_file(const std::filesystem::path& file, const std::string& kin
 }  // namespace
 
 std::vector<Concern> dataset_concerns(const Recipe& recipe, const std::vector<Concern>& planned,
-                                      const std::vector<ImageFacts>& images) {
+                                      const std::vector<ImageFacts>& images,
+                                      const std::vector<ImageFacts>& pending) {
   std::vector<Concern> concerns = no_concerns();
   for (const ImageFacts& image : images)
     look_at_image(concerns, image);
-  look_at_labels(concerns, recipe, images);
-  look_at_splits(concerns, recipe, images);
+  look_at_labels(concerns, recipe, images, pending);
+  look_at_splits(concerns, recipe, images, pending);
   for (const Concern& one : planned)
     concern(concerns, one.name.c_str()) = one;
   return concerns;

@@ -70,7 +70,8 @@ ImageRecord image_record(const PlannedImage& image, Database& database) {
 }
 
 DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
-                             const std::vector<ImageFacts>& images) {
+                             const std::vector<ImageFacts>& images,
+                             const std::vector<ImageFacts>& pending) {
   DatasetRecord record;
   record.name = recipe.name;
   record.licence = recipe.licence;
@@ -100,7 +101,7 @@ DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
   add_licences("materials", recipe.materials);
   add_licences("environments", recipe.environments);
   record.licences = group_licences(texts);
-  record.concerns = dataset_concerns(recipe, plan.concerns, images);
+  record.concerns = dataset_concerns(recipe, plan.concerns, images, pending);
   return record;
 }
 

@@ -19,8 +19,9 @@ std::string program_version();
 /// does not know one.
 ImageRecord image_record(const PlannedImage& image, Database& database);
 
-/// What the manifest says of the dataset as a whole, for the images it lists.
+/// What the manifest says of the dataset as a whole, for the images it lists; `pending` are to come.
 DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
-                             const std::vector<ImageFacts>& images);
+                             const std::vector<ImageFacts>& images,
+                             const std::vector<ImageFacts>& pending = {});
 
 }  // namespace ds

@@ -79,9 +79,12 @@ void add_older(HashStream& listing, const ListedImages& images, const PlacedFile
   add_word(listing, "older");
   OutputSettings every;  // a line may have files that the recipe no longer asks for
   every.image = every.mask = every.depth = true;
+  auto pending = images.pending.begin();
   for (const PlannedImage* image : images.lacking) {
+    const bool is_pending = pending != images.pending.end() && *pending == image;
+    if (is_pending) ++pending;
     add_word(listing, image->spec.id);
-    add_word(listing, image->refused ? "refused" : "");
+    add_word(listing, image->refused ? "refused" : is_pending ? "pending" : "");
     if (image->refused) continue;
     for (const std::string& path : output_paths(every, image->spec.id))
       listing.add(bytes_in_place(placed, path));

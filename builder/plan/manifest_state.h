@@ -22,6 +22,9 @@ struct ManifestSources {
 struct ListedImages {
   std::vector<const PlannedImage*> made;     ///< whose files are in place as the plan wants them
   std::vector<const PlannedImage*> lacking;  ///< the others: listed as the manifest before had them
+  /// Of those, the ones that are still to come: the build was cut short before them, or they are
+  /// another shard's. In the order of `lacking`.
+  std::vector<const PlannedImage*> pending;
 };
 
 /// Of a plan but for its `labels` and `manifest`.

@@ -168,6 +168,29 @@ class ConcernsTest(TinyCase):
         self.assertNotIn("warning: 1 of 3", err)
         self.assertIn("3 of 4 models", err)
 
+    def test_a_build_that_is_cut_short_counts_what_it_made(self):
+        (self.tiny / "train.cla").write_text("PSB 1\n3 2\n\nbox 0 1\nbox\n\nsolid 0 1\ntetra\n\nship 0 0\n")
+        self.edit("recipe.toml", "[materials]", '[classes]\ntrain = "train.cla"\n\n[materials]')
+        whole = (self.tiny / "models/box.off").read_text()
+        (self.tiny / "models/box.off").write_text("OFF\nbroken\n")
+        # It ends at the first failure: nobody knows yet that there is no tetra.
+        concerns, err = self.concerns(code=1)
+        self.assertEqual(concerns["classes_empty"], 2, err)  # box, which cannot be made, and ship
+        self.assertIn("2 of 3 classes have no image: box, ship", err)
+        self.assertIn(f"not looked at: {IMAGES} of {IMAGES} images, which are not made", err)
+        concerns, err = self.concerns("-k", code=1)
+        self.assertEqual(concerns["classes_empty"], 2, err)
+        self.assertIn(f"not looked at: {IMAGES // 2} of {IMAGES} images", err)
+        (self.tiny / "models/box.off").write_text(whole)
+        concerns, err = self.concerns()
+        self.assertEqual(concerns["classes_empty"], 1, err)
+        self.assertNotIn("not looked at", err)
+        # One shard after the other: what the second is to make is not missed by the first.
+        self.out = self.folder / "shards"
+        for shard in "1/8", "2/8":
+            concerns, err = self.concerns("--shard", shard)
+            self.assertEqual(concerns["classes_empty"], 1, err)
+
     def test_cameras_that_fit_cut_nothing_off(self):
         wedge = self.tiny / "models/wedge.off"  # off its middle, and of another shape
         wedge.write_text("OFF\n4 4 0\n0 0 0\n9 0 0\n9 0 5\n2 4 1\n3 0 1 2\n3 0 3 1\n3 1 3 2\n3 2 3 0\n")

@@ -62,6 +62,20 @@ TEST(DatasetConcernsTest, a_class_has_the_images_of_those_below_it) {
             (Concern{"classes_empty", 2, 5, {"animal", "vehicle/plane"}}));
 }
 
+TEST(DatasetConcernsTest, what_is_to_come_is_not_missed) {
+  Recipe recipe;
+  recipe.class_paths = {"animal", "vehicle", "vehicle/car"};
+  recipe.split_test_fraction = 0.05;
+  std::vector<ImageFacts> images{image("a", {})}, pending{image("b", {1, 0, 0, 0})};
+  images[0].class_path = "animal";
+  images[0].split = "train";
+  pending[0].class_path = "vehicle/car";
+  pending[0].split = "test";
+  EXPECT_EQ(counts(dataset_concerns(recipe, k_physical, images)),
+            (Counts{{"classes_empty", 2}, {"splits_empty", 1}}));
+  EXPECT_EQ(counts(dataset_concerns(recipe, k_physical, images, pending)), Counts{});
+}
+
 TEST(DatasetConcernsTest, a_split_that_is_asked_for_has_images) {
   std::vector<ImageFacts> images{image("a", {})};
   images[0].split = "train";
