@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 namespace ds {
 namespace {
@@ -20,6 +21,10 @@ using Changes = std::vector<std::pair<std::string, PropertyChange>>;
 
 /// Lines shown of a long value that differs (the text of the traced program).
 constexpr std::size_t k_most_lines = 40;
+
+/// Changes of one part that are told one by one without -v: of a scene that was exchanged for
+/// another there are a hundred, and none of them is what was done.
+constexpr std::size_t k_most_told = 8;
 
 /// One argument is the file of an image of a dataset; two are a dataset and an image.
 DatasetRequest request_of(const Arguments& arguments, std::string& image) {
@@ -142,6 +147,32 @@ void print_changes(const Changes& changes, const TextLookup& find) {
   }
 }
 
+/// The scene file that a part's properties come from; empty for what comes from the recipe.
+std::string scene_of(const std::string& part, const ImageSpec& spec) {
+  if (part == "material") return spec.material_file->string();
+  if (part == "environment") return (*spec.environment_folder / "environment.scn").string();
+  return "";
+}
+
+/// Takes out the changes of parts that have too many to be told, and tells how many there were; and
+/// the program's where it is another because the scene is.
+void print_many(Changes& changes, const ImageSpec& spec) {
+  std::map<std::string, std::size_t> counts;
+  for (const auto& [part, change] : changes)
+    ++counts[part];
+  if (counts.contains("material") || counts.contains("environment"))
+    std::erase_if(changes, [](const auto& change) {
+      return change.first == "engine" && change.second.name == "program";
+    });
+  for (const auto& [part, count] : counts) {
+    if (count <= k_most_told) continue;
+    const std::string scene = scene_of(part, spec);
+    say(Stream::result, "  {}: {}{} properties changed (-v tells each)\n", part,
+        scene.empty() ? "" : scene + ": ", count);
+  }
+  std::erase_if(changes, [&](const auto& change) { return counts[change.first] > k_most_told; });
+}
+
 /// ": forced; ...": the reasons that are not among the changes, which are told line by line.
 std::string other_reasons(const PlannedImage& image, const Changes& changes) {
   std::string text;
@@ -205,6 +236,7 @@ int run_explain(const Arguments& arguments) {
   for (const Assigned& one : assigned)
     say(Stream::result, "  {}: {} -> {}\n", one.name, one.before, one.after);
   std::erase_if(changes, [&](const auto& change) { return follows(change, assigned); });
+  if (!arguments.verbose) print_many(changes, image.spec);
   print_changes(changes, find);
   say(Stream::result, "render key {}\n", image.keys.render.hex());
   for (std::size_t i = 0; i < k_part_count; ++i)

@@ -129,7 +129,7 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
       return;
     case Option::verbose:
       verb.add_flag("-v,--verbose", to.verbose,
-                    "name every image, where else those with one reason share a line");
+                    "name every image or property, where else those with one reason share a line");
       return;
     case Option::explain:
       verb.add_flag("--explain", to.explain, "say why each image is made");

@@ -22,7 +22,7 @@ const std::vector<Verb>& verbs() {
        run_status},
       {"explain",
        "say which properties of an image changed, old and new, and what it simulates",
-       {optional_target_and_image, overrides, output_folder, store_folder, effects, json},
+       {optional_target_and_image, overrides, output_folder, store_folder, effects, verbose, json},
        run_explain},
       {"verify",
        "check every file of a dataset, or trace some images again",

@@ -85,6 +85,30 @@ class StaleTest(TinyCase):
             run = self.run_it(verb, self.recipe, "-o", self.out, "--rehash", "--json")
             self.assertEqual(run.code, 0, run)
 
+    def test_another_scene_in_a_file_is_explained_as_one(self):
+        self.build()
+        scene = self.tiny / "environments/plain/environment.scn"
+        lights = "".join(f"scene.lights.l{number}.type = constantinfinite\nscene.lights.l{number}.color = 0.1 0.2 {number}\n"
+                         for number in range(20))
+        scene.write_text(lights)
+        listed = map(json.loads, (self.out / "manifest/images.jsonl").read_text().splitlines())
+        image = next(line["id"] for line in listed if line["environment"] == "plain")
+        run = self.run_it("explain", self.out, image)
+        told = [line for line in run.out.splitlines() if "environment: " in line]
+        self.assertEqual(len(told), 1, run)
+        self.assertRegex(told[0], rf"^  environment: {scene}: \d+ properties changed \(-v tells each\)$")
+        self.assertLess(len(run.out.splitlines()), 12, run)
+        every = self.run_it("explain", self.out, image, "-v").out
+        self.assertIn("lights.l19", every)
+        changes = self.run_it("explain", self.out, image, "--json").json["changes"]
+        self.assertIn(f": {sum(one['part'] == 'environment' for one in changes)} properties", told[0])
+        # A few are told one by one.
+        self.build()
+        scene.write_text(lights.replace("0.1 0.2 7", "0.1 0.2 7.5"))
+        run = self.run_it("explain", self.out, image)
+        self.assertIn("lights.l7", run.out)
+        self.assertNotIn("-v tells", run.out)
+
     def test_another_assignment_is_explained_as_one(self):
         self.build()
         before = {line["id"]: line for line in map(json.loads, (self.out / "manifest/images.jsonl").read_text().splitlines())}
