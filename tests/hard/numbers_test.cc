@@ -83,7 +83,7 @@ std::vector<Spoiler> material_spoilers() {
       {"material's number",
        [](Picture& p, float x) {
          p.scene.materials[static_cast<std::size_t>(pictures::add_material(p.scene, "glossy2"))]
-             .numbers[1] = x;
+             .numbers.at(0) = x;
        },
        "material glossy2: a number must be finite"},
       {"mix",
