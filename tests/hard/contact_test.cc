@@ -215,8 +215,9 @@ TEST(Contact, WhatTheCameraDoesNotSeeHidesNothing) {
   }
 }
 
-/// A body of glass on a floor that may be lower by `gap`; of no height it is a sheet.
-Picture glass_on_floor(const Pose& pose, Vec3 half, double gap) {
+/// A body of glass on a floor that may be lower by `gap`; of no height it is a sheet. The lamp below
+/// the floor must not shine through it.
+Picture glass_on_floor(const std::string& glass, const Pose& pose, Vec3 half, double gap) {
   Picture p = hard::deep_picture(12, 256);
   pictures::add_object(p.scene, square(0.02, 0.01, k_ground - gap, 10, 1, pose),
                        pictures::add_matte(p.scene, {0.8f, 0.5f, 0.2f}));
@@ -225,9 +226,10 @@ Picture glass_on_floor(const Pose& pose, Vec3 half, double gap) {
   for (Vec3& v : body.positions)
     v = to_float(pose(to_double({v.x, v.y, v.z < ground + half.z ? ground : v.z})));
   if (half.z == 0) body = square(0, 0, k_ground, double{half.x}, 1, pose);
-  pictures::add_object(p.scene, body, pictures::add_material(p.scene, "glass"), k_model_object_id);
+  pictures::add_object(p.scene, body, pictures::add_material(p.scene, glass), k_model_object_id);
   p.scene.lights.push_back(pictures::constant_light({1, 1, 1}));
   p.scene.lights.push_back(pictures::point_light(to_float(pose({0.3, 0.2, 0.8})), {1, 1, 1}));
+  p.scene.lights.push_back(pictures::point_light(to_float(pose({0, 0, -0.8})), {9, 9, 9}));
   p.camera.fov_deg = 12;
   p.engine.depth_total = 12;
   p.engine.depth_diffuse = p.engine.depth_glossy = p.engine.depth_specular = 12;
@@ -237,14 +239,16 @@ Picture glass_on_floor(const Pose& pose, Vec3 half, double gap) {
 
 TEST(Contact, GlassOnAFloorShowsTheFloor) {
   // As with a gap of a thousandth of the body, which by itself is worth less than the bound.
-  for (const Pose& pose : {k_level, k_tilted})
-    for (const Vec3 half :
-         {Vec3{0.08f, 0.08f, 0.08f}, Vec3{0.08f, 0.08f, 0.002f}, Vec3{0.08f, 0.08f, 0}}) {
-      const pictures::Estimate on = pictures::estimate(glass_on_floor(pose, half, 0), 8);
-      const pictures::Estimate off = pictures::estimate(glass_on_floor(pose, half, 1e-4), 8, 99);
-      EXPECT_NEAR(on.mean, off.mean, 4 * std::hypot(on.error, off.error) + 0.004 * off.mean)
-          << pose.name << ", " << half.z;
-    }
+  for (const std::string glass : {"glass", "roughglass"})
+    for (const Pose& pose : {k_level, k_tilted})
+      for (const Vec3 half :
+           {Vec3{0.08f, 0.08f, 0.08f}, Vec3{0.08f, 0.08f, 0.002f}, Vec3{0.08f, 0.08f, 0}}) {
+        const pictures::Estimate on = pictures::estimate(glass_on_floor(glass, pose, half, 0), 8);
+        const pictures::Estimate off =
+            pictures::estimate(glass_on_floor(glass, pose, half, 1e-4), 8, 99);
+        EXPECT_NEAR(on.mean, off.mean, 4 * std::hypot(on.error, off.error) + 0.004 * off.mean)
+            << glass << ", " << pose.name << ", " << half.z;
+      }
 }
 
 /// A lamp on a black wall that may be farther by `gap`, and a grey plane before it.
@@ -302,7 +306,7 @@ TEST(Contact, WhatLiesOnALampHidesItsLight) {
 
 TEST(Contact, NoTreeChangesABit) {
   for (Picture p : {plate_on_floor(k_tilted, 10, 9, 7), plate_on_floor(k_level, 1, 1, 1),
-                    glass_on_floor(k_tilted, {0.08f, 0.08f, 0.02f}, 0)}) {
+                    glass_on_floor("glass", k_tilted, {0.08f, 0.08f, 0.02f}, 0)}) {
     p.engine.spp = 16;
     look_from(p, k_tilted, 15, 0.4);
     std::string film;

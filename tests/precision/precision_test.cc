@@ -34,6 +34,8 @@ std::vector<float> inputs_of(const NodeType& type, float u, float v, Numbers& nu
                   : input.name == "vroughness" ? v
                   : input.width == 3 ? input.default_value * (0.2f + 0.8f * numbers.next())
                                      : input.default_value);
+  for (const NumberType& number : type.numbers)
+    p.push_back(number.default_value);
   return p;
 }
 
@@ -41,6 +43,25 @@ std::array<float, 3> above(double cosine, double azimuth) {
   const double s = std::sqrt(1 - cosine * cosine);
   return {static_cast<float>(s * std::cos(azimuth)), static_cast<float>(s * std::sin(azimuth)),
           static_cast<float>(cosine)};
+}
+
+/// Of the sum that the half vector of reflection or, below the surface, of refraction is made from:
+/// wo + eta wi at the default indices.
+struct Half {
+  double length = 0;
+  double cosine = 0;  ///< of wi to the half vector's line
+};
+template <typename Direction>
+Half half_of(const BsdfQuestion& q, const Direction& wi) {
+  const double eta = wi[2] > 0 ? 1 : q.outside ? 1.5 : 1 / 1.5;
+  double squares = 0, along = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double sum = double{q.wo[i]} + eta * double{wi[i]};
+    squares += sum * sum;
+    along += sum * double{wi[i]};
+  }
+  const double length = std::max(1e-3, std::sqrt(squares));
+  return {length, std::fabs(along) / length};
 }
 
 /// How near a number is to the ends of [0, 1].
@@ -83,10 +104,10 @@ TEST(Precision, Bsdf) {
             // that is rounded to half-ulps of 1 and may be short, so its angle is known to 2^-24
             // over its length, and ln D to four times that over alpha.
             const double alpha = std::max(1e-3, double{std::min(u, v)});
-            const double sum =
-                std::max(1e-3, std::hypot(double{q.wo[0] + q.wi[0]}, double{q.wo[1] + q.wi[1]},
-                                          double{q.wo[2] + q.wi[2]}));
-            const double condition = 1 + 1 / (alpha * sum);
+            // Below the surface the value goes with the cosine of refraction.
+            const Half aimed = half_of(q, q.wi);
+            const double condition = 1 + 1 / (alpha * aimed.length) +
+                                     (q.wi[2] < 0 ? 1 / std::max(1e-4, aimed.cosine) : 0);
             const std::string where = fmt::format("{} alpha {} {} cos {}", type.name, u, v, cosine);
             if (greatest(d.value) > 1e-12) value.add(relative(f.value, d.value), condition, where);
             if (d.pdf > 1e-12) value.add(relative(f.pdf, d.pdf), condition, where);
@@ -100,14 +121,15 @@ TEST(Precision, Bsdf) {
             // half-ulps of 1 become half-ulps over sqrt(n).
             const double rim = std::sqrt(
                 std::max(0x1p-24, std::min({rim_of(q.numbers[0]), rim_of(q.numbers[1])})));
-            way.add(distance(f.sampled, d.sampled), 1 + 1 / rim, where);
-            const double both = std::max(
-                1e-3, std::hypot(double{q.wo[0]} + d.sampled[0], double{q.wo[1]} + d.sampled[1],
-                                 double{q.wo[2]} + d.sampled[2]));
+            // The cosine of refraction, sqrt(1 - sin^2 / eta^2), does the same to the facet's error near
+            // total reflection.
+            const Half half = half_of(q, d.sampled);
+            const double bend = d.sampled[2] < 0 ? 1 + 1.5 / std::max(1e-4, half.cosine) : 1;
+            way.add(distance(f.sampled, d.sampled), (1 + 1 / rim) * bend, where);
             // That turns the direction, whose height the weight is in proportion to.
             const double height = std::max(1e-4, std::fabs(d.sampled[2]));
-            weight.add(relative(f.weight, d.weight), 1 / (alpha * both) + (1 + 1 / rim) / height,
-                       where);
+            weight.add(relative(f.weight, d.weight),
+                       1 / (alpha * half.length) + (1 + 1 / rim) / height, where);
           }
   }
   // The fits have coefficients of up to 20 that sum to about 1, and glossy2 takes what they give

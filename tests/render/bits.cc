@@ -5,6 +5,7 @@
 #include "tracer/base/hash.h"
 #include "tracer/device/program_text.h"
 #include "tracer/device/program_tokens.h"
+#include "tracer/scene/sdl.h"
 
 #include <algorithm>
 #include <span>
@@ -58,6 +59,7 @@ std::map<std::string, std::string> bits_of(const BitsRequest& request) {
   for (const Picture& picture : wanted_pictures(request)) {
     const Features features = features_of(picture.scene, picture.camera);
     table[picture.name + " program"] = hash_text(program_tokens(path_program_text(features))).hex();
+    table[picture.name + " scene"] = hash_text(canonical_environment(picture.scene)).hex();
     tracer.set_scene(picture.scene);
     table[picture.name + " film"] = film_hash(tracer.trace(picture.camera, picture.engine));
     table[picture.name + " geometry"] = geometry_hash_of(

@@ -132,6 +132,17 @@ void add_lights(const Scene& scene, Features& f) {
     if (names.contains(type.kernel_prefix)) add_light(type, f);
 }
 
+/// "#define NAME(type) (((type) == 0u) | ((type) == 2u))": whether a point's material, which is no
+/// chooser, has the trait. Nothing where none of the program has.
+std::string trait_definition(std::string_view name, const Features& f, unsigned trait) {
+  std::string any;
+  for (const NodeType& type : material_types())
+    if (const int number = Features::number(f.materials, type.kernel_prefix);
+        number >= 0 && has_trait(type, trait))
+      any += fmt::format("{}((type) == {}u)", any.empty() ? "" : " | ", number);
+  return any.empty() ? "" : fmt::format("#define {}(type) ({})\n", name, any);
+}
+
 /// Whether a material of the program, or a chooser, has the trait.
 bool any_material(const Features& f, unsigned trait) {
   return std::any_of(material_types().begin(), material_types().end(), [&](const NodeType& type) {
@@ -253,14 +264,8 @@ std::string path_program_text(const Features& f) {
   if (f.lens) head += "#define DS_LENS\n";
   if (f.camera_invisible) head += "#define DS_CAMERA_INVISIBLE\n";
   if (f.lobe_choice) head += "#define DS_LOBE_CHOICE\n";
-  if (f.guide) {
-    std::string guided;
-    for (const NodeType& type : material_types())
-      if (const int number = Features::number(f.materials, type.kernel_prefix);
-          number >= 0 && has_trait(type, kernels::k_trait_receives_caustics))
-        guided += fmt::format("{}((type) == {}u)", guided.empty() ? "" : " | ", number);
-    head += fmt::format("#define DS_GUIDED(type) ({})\n", guided);
-  }
+  head += trait_definition("DS_TRANSMITS", f, kernels::k_trait_transmits);
+  if (f.guide) head += trait_definition("DS_GUIDED", f, kernels::k_trait_receives_caustics);
 
   std::set<std::string, std::less<>> done;
   std::string text = head;

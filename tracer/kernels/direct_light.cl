@@ -123,7 +123,11 @@ DS_FN Candidate choose(mask m, Candidate a, Candidate b) {
 
 DS_FN Candidate light_candidate(const LightSample* light, const Paths* paths, mask active,
                                 const Surface* s, const MaterialPoint* m, const Leaving* l) {
-  const mask faces = active & (light->pdf > 0.0f) & (dot(light->wi, s->normal) > 0.0f);
+  mask faces = dot(light->wi, s->normal) > 0.0f;
+#  ifdef DS_TRANSMITS
+  faces = faces | (DS_TRANSMITS(m->type) & (dot(light->wi, s->normal) < 0.0f));
+#  endif
+  faces = active & (light->pdf > 0.0f) & faces;
   const BsdfValue bsdf = leaving_value(m, l, to_local(l->frame, light->wi), faces);
   const real other = leaving_pdf(l, light->wi, bsdf.pdf);
   const real mis = choose(light->dirac, (real)(1.0f), power_heuristic(light->pdf, other));

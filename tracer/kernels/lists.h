@@ -10,7 +10,8 @@
   X("glossy2", glossy2, GLOSSY2)   \
   X("metal2", metal2, METAL2)      \
   X("mirror", mirror, MIRROR)      \
-  X("glass", glass, GLASS)
+  X("glass", glass, GLASS)         \
+  X("roughglass", roughglass, ROUGHGLASS)
 #define DS_CHOOSING_MATERIALS(X) X("mix", mix, MIX)
 #define DS_ALL_MATERIALS(X) DS_SCATTERING_MATERIALS(X) DS_CHOOSING_MATERIALS(X)
 

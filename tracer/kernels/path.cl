@@ -93,16 +93,40 @@ DS_FN bool settle_ties(const SceneTables* t, const SceneData* scene, const Paths
          top_hits(t->nodes, t->leaves, t->triangles, rays, wanted, camera, found);
 }
 
-/// Where paths of `active` that have left a tied surface by their new direction go on to the next:
-/// from one reached from afar only through it, since nothing lies on that.
+/// Where a direction that leaves a tied surface may meet the next one tied with it: from one reached
+/// from afar only through it, since nothing lies on that. `*rises`: the next above, not below.
+DS_FN mask may_meet_layer(const Ties* ties, mask through, mask* rises) {
+  *rises = choose_mask(through, ties->rises, !ties->rises);
+  const mask up = ties->inside & *rises & ((ties->flags & (uint)k_flag_covered) != 0u);
+  return up | (!*rises & ((ties->flags & (uint)k_flag_covers) != 0u));
+}
+
+/// Sends paths of `active` that have left a tied surface by their new direction on to the next.
 DS_FN void ask_for_layer(Paths* paths, mask active, const Ties* ties, const Surface* s,
                          natural id) {
   const mask through = dot(paths->direction, s->normal) < 0.0f;
-  paths->rises = choose_mask(through, ties->rises, !ties->rises);
-  const mask up = ties->inside & paths->rises & ((ties->flags & (uint)k_flag_covered) != 0u);
-  const mask down = !paths->rises & ((ties->flags & (uint)k_flag_covers) != 0u);
-  paths->layer = choose_natural(active & (up | down), id, paths->layer);
+  const mask may = may_meet_layer(ties, through, &paths->rises);
+  paths->layer = choose_natural(active & may, id, paths->layer);
 }
+
+#ifdef DS_LIGHTS_SAMPLED
+/// Lets no shadow ray out that a surface tied with its origin's stands before.
+DS_FN void shade_by_ties(Paths* paths, const SceneTables* t, const Ties* ties, const Surface* s,
+                         natural id) {
+#  ifdef DS_TRANSMITS
+  const mask through = dot(paths->shadow.direction, s->normal) < 0.0f;
+  mask rises;
+  const mask asks = paths->shadow.wanted & may_meet_layer(ties, through, &rises);
+  if (any_lane(asks))
+    paths->shadow.wanted =
+        paths->shadow.wanted & (next_layers(t->nodes, t->leaves, t->triangles, paths->shadow.origin,
+                                            id, rises, asks) == k_none);
+#  else
+  // What the path came through stands before every light on that side.
+  paths->shadow.wanted = paths->shadow.wanted & !ties->inside;
+#  endif
+}
+#endif
 
 /// How a step left the paths that it ended.
 typedef struct {
@@ -207,8 +231,7 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
 #endif
 #ifdef DS_LIGHTS_SAMPLED
   ask_for_light(paths, active, &s, &m, &leaving, sampler, pair, choices.x, scene, t);
-  // What the path came through stands before every light on that side.
-  paths->shadow.wanted = paths->shadow.wanted & !ties.inside;
+  shade_by_ties(paths, t, &ties, &s, *(const natural*)found.id);
 #endif
   ends.closes = scatter(paths, active, &s, &m, &leaving, sampler, pair, lobe, choices.y, view);
   ask_for_layer(paths, active & !ends.closes, &ties, &s, *(const natural*)found.id);

@@ -8,6 +8,7 @@ enum {
   k_trait_lobes = 1,              ///< picks one of several lobes: its paths draw a number for it
   k_trait_casts_caustics = 2,     ///< gathers light: photons leave it
   k_trait_receives_caustics = 4,  ///< looks for what was gathered: guide.h
+  k_trait_transmits = 512,        ///< has a value below the surface: lights there are asked as well
   // A texture reads ...
   k_trait_uv = 8,         ///< the mesh's uv, by a 2D mapping
   k_trait_position = 16,  ///< a point in space, by a 3D mapping

@@ -45,7 +45,7 @@ TEST(Effects, AreSimulatedWhereTheProgramHoldsTheirCode) {
     const auto has = [&](const std::string& code) { return text.find(code) != text.npos; };
     for (const NodeType& type : material_types()) {
       const std::string code =
-          std::string(type.kernel_prefix) + (type.children > 0 ? "_child(" : "_sample(");
+          " " + std::string(type.kernel_prefix) + (type.children > 0 ? "_child(" : "_sample(");
       EXPECT_EQ(find(effects, "material", type.name).simulated, has(code)) << p.name << type.name;
     }
     for (const NodeType& type : texture_types())
