@@ -54,6 +54,7 @@ int run(std::span<const char* const> arguments) {
 
 int main(int count, char** arguments) {
   ds::reserve_standard_streams();
+  ds::watch_signals();
   // A file over `ulimit -f` is then an error of one write, as on a full disk, and not the end of
   // the process.
   std::signal(SIGXFSZ, SIG_IGN);

@@ -1,58 +1,86 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/stop_signal.h"
 
+#include <chrono>
 #include <csignal>
-#include <ctime>
+#include <optional>
+#include <system_error>
+#include <thread>
 
 namespace ds {
 namespace {
 
-constexpr int k_signals[] = {SIGINT, SIGTERM, SIGHUP};
+using Clock = std::chrono::steady_clock;
+
+/// What a user, a terminal or a batch system ends a process by. LSF and Grid Engine send SIGUSR1,
+/// SIGUSR2 or SIGXCPU before their SIGKILL, Slurm what its --signal says.
+constexpr int k_signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGUSR1, SIGUSR2};
 
 /// One wish to stop often comes as two signals: timeout(1) sends its own to the process and to its
 /// group, a terminal that goes away makes shell and kernel send one each. What comes sooner than
 /// this is no second wish.
-constexpr long k_one_wish_ms = 200;
+constexpr std::chrono::milliseconds k_one_wish{200};
 
+std::atomic<bool> g_armed{false};  ///< a signal is a wish to end cleanly, not the end
 std::atomic<bool> g_stop{false};
 std::atomic<int> g_signal{0};
-std::atomic<long> g_since_ms{0};
-static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
-                  std::atomic<long>::is_always_lock_free,
-              "a signal handler may only touch what needs no lock");
 
-long now_ms() {
-  timespec now{};
-  ::clock_gettime(CLOCK_MONOTONIC, &now);  // a handler may call it
-  return now.tv_sec * 1000 + now.tv_nsec / 1'000'000;
+/// SIGXCPU comes every second once the limit is passed, the others by the batch system's clock.
+bool is_users(int signal) {
+  return signal == SIGINT || signal == SIGTERM || signal == SIGQUIT;
+}
+
+sigset_t set_of(int signal) {
+  sigset_t set;
+  ::sigemptyset(&set);
+  ::sigaddset(&set, signal);
+  return set;
 }
 
 void die_of(int signal) {
   std::signal(signal, SIG_DFL);
+  const sigset_t one = set_of(signal);
+  ::pthread_sigmask(SIG_UNBLOCK, &one, nullptr);
   std::raise(signal);
 }
 
-extern "C" void set_stop(int signal) {
-  int none = 0;
-  if (g_signal.compare_exchange_strong(none, signal)) {
-    g_since_ms = now_ms();
-    g_stop = true;
-  } else if (signal != SIGHUP && g_since_ms > 0 && now_ms() - g_since_ms > k_one_wish_ms) {
-    die_of(signal);
+void watch(sigset_t signals) {
+  std::optional<Clock::time_point> since;  // the first wish
+  for (;;) {
+    int signal = 0;
+    if (::sigwait(&signals, &signal) != 0) continue;
+    if (!g_armed) die_of(signal);
+    if (!since) {
+      since = Clock::now();
+      g_signal = signal;
+      g_stop = true;
+    } else if (is_users(signal) && Clock::now() - *since > k_one_wish) {
+      die_of(signal);
+    }
   }
 }
 
 }  // namespace
 
-const std::atomic<bool>& stop_on_signal() {
-  struct sigaction action = {};
-  action.sa_handler = set_stop;
-  action.sa_flags = SA_RESTART;
+void watch_signals() {
+  sigset_t signals;
+  ::sigemptyset(&signals);
   for (const int signal : k_signals) {
     struct sigaction before = {};
     if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_IGN) continue;
-    ::sigaction(signal, &action, nullptr);
+    ::sigaddset(&signals, signal);
   }
+  sigset_t before;
+  if (::pthread_sigmask(SIG_BLOCK, &signals, &before) != 0) return;
+  try {
+    std::thread(watch, signals).detach();
+  } catch (const std::system_error&) {  // no threads are left: signals end the process as ever
+    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  }
+}
+
+const std::atomic<bool>& stop_on_signal() {
+  g_armed = true;
   return g_stop;
 }
 

@@ -5,10 +5,15 @@
 
 namespace ds {
 
-/// Set by the first SIGINT, SIGTERM or SIGHUP after the first call; what is under way is to end
-/// cleanly then. A second SIGINT or SIGTERM, a moment later, ends the process at once, as without
-/// this. A signal that was ignored when the process began stays so: that is all that nohup does,
-/// and a shell without job control for what runs in its background.
+/// To be called once, before any thread is started. A thread waits for the signals from then on, and
+/// all others block them: OpenCL's compiler handles signals in its own way once it is loaded, and
+/// would take some for good. A signal that was ignored when the process began stays so: that is all
+/// that nohup does, and a shell without job control for what runs in its background.
+void watch_signals();
+
+/// Set by the first SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGUSR1 or SIGUSR2 after the first
+/// call; what is under way is to end cleanly then. Before that call they end the process, and so
+/// does a second SIGINT, SIGTERM or SIGQUIT, a moment later.
 const std::atomic<bool>& stop_on_signal();
 
 /// Whether a signal has set it.

@@ -5,6 +5,7 @@ import json
 import os
 import pty
 import re
+import resource
 import signal
 import struct
 import subprocess
@@ -13,6 +14,8 @@ import time
 
 from harness import IMAGES, TinyCase, main
 
+# What users, terminals and batch systems end a process by.
+STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGXCPU, signal.SIGUSR1, signal.SIGUSR2)
 SLOW = ["--set", "engine.spp=6000"]  # an image takes long enough to be interrupted
 
 
@@ -49,7 +52,7 @@ class SignalTest(ProcessCase):
         return process.returncode, out, err
 
     def test_it_dies_of_the_signal_and_keeps_what_is_finished(self):
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        for number in STOPS:
             code, out, err = self.interrupt(number, False)
             self.assertEqual(code, -number, err)
             self.assertIn("not reached", out)
@@ -63,11 +66,34 @@ class SignalTest(ProcessCase):
         subprocess.run(["rm", "-rf", str(self.out)], check=True)
 
     def test_ignored_at_the_start_stays_ignored(self):
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        for number in STOPS:
             code, _, err = self.interrupt(number, True)
             self.assertEqual(code, 0, err)
             self.assert_whole()
             self.tearDownOut()
+
+    def test_a_limit_of_processor_time_ends_it_cleanly(self):
+        # The kernel tells it at the soft limit, and again every second.
+        process = self.start("build", self.recipe, "-o", self.out, "--set", "engine.spp=20000",
+                             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (3, 100)))
+        out, err = process.communicate(timeout=300)
+        self.assertEqual(process.returncode, -signal.SIGXCPU, err)
+        self.assertIn("not reached", out)
+        self.assertIn("what is finished is recorded", err)
+
+    def test_before_anything_is_traced_it_ends_at_once(self):
+        # Waiting for another build, which makes something else.
+        other = self.start("build", self.recipe, "-o", self.out, *SLOW)
+        self.wait_for_picture()
+        for number in STOPS:
+            process = self.start("build", self.recipe, "-o", self.out, "--device", "pthread")
+            self.assertIn("waiting for another build", process.stderr.readline())
+            process.send_signal(number)
+            process.communicate(timeout=20)
+            self.assertEqual(process.returncode, -number)
+        self.assertIsNone(other.poll(), "it builds on")
+        other.kill()
+        other.communicate()
 
     def start_long_image(self):
         # One image of minutes: the second signal comes while the first is being heeded.
