@@ -133,11 +133,13 @@ int dry_run(const Arguments& arguments, const Plan& plan, const BuildOptions& op
                 {"failed", counts.failed},
                 {"stale", counts.stale},
                 {"manifest", to_json(plan.manifest)},
+                {"edited_files", plan.edited.size()},
                 {"traced_samples", 0},
                 {"seconds", seconds_since(options.started)}});
   else {
     say(Stream::result, "{}\n", summary(counts));
     print_manifest_line(plan);
+    print_edited(Stream::result, plan);
   }
   return counts.failed > 0 ? 1 : 0;
 }
@@ -167,6 +169,7 @@ int run_build(const Arguments& arguments) {
   Inputs& inputs = *sole.inputs;
   const Plan& plan = sole.plan;
   warn_of_mended(plan);
+  print_edited(Stream::people, plan);
   const std::vector<Lacking> all_lacking = find_lacking(plan, inputs);
   for (const Lacking& lacking : all_lacking)
     warn(to_text(lacking));
@@ -195,6 +198,7 @@ int run_build(const Arguments& arguments) {
         result.images);
   nlohmann::json told = to_json(result, dataset);
   told["lacking"] = to_json(all_lacking);
+  told["edited_files"] = plan.edited.size();
   if (arguments.json)
     print_json(told);
   else

@@ -21,6 +21,7 @@ nlohmann::json plan_json(const Plan& plan, const PlanCounts& counts) {
   nlohmann::json object = to_json(counts);
   object["manifest"] = to_json(plan.manifest);
   object["remove_files"] = plan.to_remove;
+  object["edited_files"] = plan.edited;
   object["stale_images"] = nlohmann::json::array();
   object["failed_images"] = nlohmann::json::array();
   for (const PlannedImage& image : plan.images) {
@@ -174,6 +175,7 @@ int run_plan(const Arguments& arguments) {
     if (!wish.any) print_plan(Stream::result, plan, arguments.verbose);
     say(Stream::result, "{}\n", summary(counts));
     print_manifest_line(plan);
+    print_edited(Stream::result, plan);
   }
   bool answered = true;
   if (wish.any) {

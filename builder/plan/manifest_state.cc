@@ -16,10 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* k_images_file = "manifest/images.jsonl";
-constexpr const char* k_dataset_file = "manifest/dataset.json";
-constexpr const char* k_checksums_file = "manifest/checksums.xxh128";
-constexpr std::array k_manifest_files{k_images_file, k_dataset_file, k_checksums_file};
+constexpr const char* k_images_file = k_manifest_files[0];
+constexpr const char* k_dataset_file = k_manifest_files[1];
+constexpr const char* k_checksums_file = k_manifest_files[2];
 
 /// Settings and licences named in full; what follows is counted.
 constexpr std::size_t k_most_named = 4;

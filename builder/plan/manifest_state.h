@@ -4,10 +4,15 @@
 #include "builder/plan/placed_files.h"
 #include "builder/plan/plan.h"
 
+#include <array>
 #include <optional>
 #include <vector>
 
 namespace ds {
+
+/// Relative to the dataset's folder.
+inline constexpr std::array<const char*, 3> k_manifest_files{
+    "manifest/images.jsonl", "manifest/dataset.json", "manifest/checksums.xxh128"};
 
 /// Hashes of what the manifest is written from, so that asking whether it is behind costs neither
 /// its writing nor its reading. They stand as `product` of the manifest's files in the database.

@@ -100,6 +100,17 @@ std::optional<Hash128> PlacedFiles::bytes_in_place(const std::string& path) cons
   return content_hash(dataset_.folder / path);
 }
 
+bool PlacedFiles::is_edited(const std::string& path) const {
+  const Row* placed = find(path);
+  if (placed == nullptr) return false;
+  try {
+    const std::optional<Hash128> bytes = bytes_in_place(path);
+    return bytes && bytes != placed->object;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 std::vector<std::string> PlacedFiles::left_over(const std::vector<PlannedImage>& images,
                                                 Shard shard) const {
   std::vector<bool> wanted(rows_.size());

@@ -177,6 +177,21 @@ void check_names(const std::vector<OutputFile>& outputs) {
   }
 }
 
+std::vector<std::string> edited_files(const Plan& plan) {
+  std::vector<std::string> edited;
+  const auto look = [&](const std::string& path) {
+    if (plan.placed->is_edited(path)) edited.push_back(path);
+  };
+  for (const PlannedImage& image : plan.images)
+    for (const PlannedFile& file : image.files)
+      if (file.state != FileState::in_place) look(file.output.path);
+  for (const std::string& path : plan.to_remove)
+    look(path);
+  for (const char* path : k_manifest_files)
+    look(path);
+  return edited;
+}
+
 /// Counts the files, whose findings were said when they were read.
 Concern count_unphysical(const std::vector<PlannedImage>& images, Inputs& inputs) {
   Concern concern{"assets_unphysical", 0, 0, {}};
@@ -265,6 +280,7 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
   snapshot.reset();
   plan.labels = labels_of(dataset.recipe, plan);
   plan.manifest = manifest_state(dataset, plan, *plan.placed);
+  plan.edited = edited_files(plan);
   inputs.remember();
   plan.placed->remember_stamps();
   return plan;

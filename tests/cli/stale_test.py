@@ -79,6 +79,39 @@ class StaleTest(TinyCase):
         self.assert_counts(self.build(), built=1, reused=IMAGES - 1)
         self.assertEqual(self.contents(), files)
 
+    def test_a_build_says_that_it_replaces_what_was_edited(self):
+        self.build()
+        files = self.contents()
+        out = ["-o", self.out]
+        edited = ["images/box.off/0.png", "images/box.off/1.mask.png", "images/tetra.ply/3.png", "manifest/dataset.json"]
+        for path in edited:
+            data = (self.out / path).read_bytes()
+            (self.out / path).unlink()
+            (self.out / path).write_bytes(data + b"mine")
+        # The same bytes under another stamp are no edit, and a file that is gone is none.
+        same = self.out / "images/tetra.ply/2.png"
+        data = same.read_bytes()
+        same.unlink()
+        same.write_bytes(data)
+        (self.out / "images/tetra.ply/1.png").unlink()
+        for settings, count in ([], 4), (["--set", "engine.spp=2"], 4), (["--set", "camera.views=[1]"], 4), (["--force"], 4):
+            for verb in (["build", "-n"], ["plan"]):
+                if settings == ["--force"] and verb == ["plan"]:
+                    continue
+                run = self.run_it(*verb, self.recipe, *out, *settings)
+                self.assertIn(f"{count} files were changed after dsbuild made them, and are replaced or removed: ", run.out)
+                self.assertIn("and 1 more", run.out)
+                told = self.run_it(*verb, self.recipe, *out, *settings, "--json").json["edited_files"]
+                self.assertEqual(told if verb != ["plan"] else len(told), count)
+        self.assertEqual(set(self.run_it("plan", self.recipe, *out, "--json").json["edited_files"]), set(edited))
+        run = self.run_it("build", self.recipe, *out, "--json")
+        self.assertIn("4 files were changed after dsbuild made them", run.err)
+        self.assertEqual(run.json["edited_files"], 4)
+        self.assertEqual(self.contents(), files)
+        run = self.run_it("build", self.recipe, *out, "--json")
+        self.assertEqual(run.json["edited_files"], 0)
+        self.assertNotIn("changed after", run.err)
+
     def test_rehash_reads_what_the_stamp_would_spare(self):
         self.build()
         for verb in ("build", "status", "plan"):
