@@ -7,6 +7,7 @@
 #include "builder/cmd/verbs.h"
 #include "builder/report/csv.h"
 #include "builder/report/page.h"
+#include "builder/store/input_folders.h"
 #include "tracer/base/files.h"
 #include "tracer/base/streams.h"
 
@@ -77,6 +78,8 @@ int run_accuracy(const Arguments& arguments) {
     if (std::error_code error; fs::is_directory(file, error))
       fail(ErrorKind::usage, "-o {}: wanted the name of a page, found the folder {}",
            report.string(), file.string());
+  for (const fs::path& file : {report, csv_file})
+    check_no_input_file(file, "-o", dataset.recipe);
   Inputs inputs(*dataset.database);
   TracerOptions options;
   options.device = arguments.device;

@@ -2,6 +2,7 @@
 #include "builder/store/dataset.h"
 
 #include "builder/store/folder_lock.h"
+#include "builder/store/input_folders.h"
 #include "builder/store/store_database.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
@@ -349,6 +350,12 @@ Dataset open_recipe(const DatasetRequest& request, Access access, Disk& disk) {
   Dataset dataset;
   dataset.recipe = read_recipe(request.target, request.overrides);
   dataset.folder = folder_of(request, dataset.recipe);
+  if (access != Access::inputs) {
+    check_no_input_folder(dataset.folder, request.output_folder.empty() ? "dataset.name" : "-o",
+                          dataset.recipe);
+    if (!request.store_folder.empty())
+      check_no_input_folder(normal(request.store_folder), "--store", dataset.recipe);
+  }
   const std::optional<Pointer> known = read_pointer(dataset.folder);
   if (!known && access != Access::inputs && request.output_folder.empty())
     tell_of_older_name(request, dataset, disk);

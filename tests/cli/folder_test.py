@@ -165,6 +165,39 @@ class FolderTest(TinyCase):
         self.assertEqual(self.run_it("build", self.recipe, "-o", self.out).code, 2)
         self.assert_counts(self.run_it("build", self.recipe, "-o", self.out, "--adopt", "--json").json, built=IMAGES)
 
+    def test_a_folder_of_inputs_is_no_folder_for_outputs(self):
+        (self.tiny / "train.cla").write_text("PSB 1\n1 2\n\nthing 0 2\nbox\ntetra\n")
+        (self.tiny / "classes").mkdir()
+        os.rename(self.tiny / "train.cla", self.tiny / "classes/train.cla")
+        self.edit("recipe.toml", "[materials]", '[classes]\ntrain = "classes/train.cla"\n\n[materials]')
+        (self.folder / "link").symlink_to(self.tiny / "models")
+        before = self.contents(self.tiny)
+        for name, what in (("", "the recipe"), ("models", "models"), ("materials/", "materials"), ("../link", "models"),
+                           ("environments", "environments"), ("environments/plain", "an environment"),
+                           ("classes/../classes", "class files")):
+            for option in "-o", "--store":
+                for verb in (["build"], ["build", "--adopt"], ["build", "-n"], ["plan"], ["status"]):
+                    run = self.run_it(*verb, self.recipe, option, f"{self.tiny}/{name}")
+                    self.assertEqual((run.code, run.err.count("\n"), run.out), (2, 1, ""), run)
+                    self.assertIn(f"found that of {what} (", run.err)
+                    self.assertIn(f"{option} ", run.err)
+        # What a build owns of its folder holds no inputs.
+        (self.folder / "set/images").mkdir(parents=True)
+        shutil.copytree(self.tiny / "models", self.folder / "set/images/models")
+        for verb in ("build", "plan"):
+            run = self.run_it(verb, self.recipe, "-o", self.folder / "set", "--adopt", "--set",
+                              f"models.dir={self.folder}/set/images/models")
+            self.assertEqual(run.code, 2, run)
+            self.assertIn("found that of models (", run.err)
+        for path in "recipe.toml", "models/box.off", "classes/train.cla":
+            run = self.run_it("accuracy", self.recipe, "-o", self.tiny / path)
+            self.assertEqual(run.code, 2, run)
+            self.assertIn("is read by the recipe and would be written over", run.err)
+        self.assertEqual(self.contents(self.tiny), before)
+        # Beside and below them there is room.
+        for place in "out", "models/out":
+            self.assertEqual(self.run_it("build", self.recipe, "-o", self.tiny / place).code, 0)
+
     def test_two_recipes_that_link_to_one_file_are_two(self):
         other = self.folder / "other"
         shutil.copytree(self.tiny, other)
