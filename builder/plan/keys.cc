@@ -4,6 +4,7 @@
 #include "builder/plan/text_form.h"
 #include "tracer/base/canonical.h"
 #include "tracer/base/hex_text.h"
+#include "tracer/device/plane_types.h"
 #include "tracer/device/program_text.h"
 #include "tracer/device/program_tokens.h"
 #include "tracer/render/engine_text.h"
@@ -252,7 +253,8 @@ KeyMaker::State::State(const Recipe& recipe, Inputs& inputs, TextSet& texts)
       inputs_(inputs),
       texts_(texts),
       output_kinds_(kinds_of(recipe.outputs)),
-      geometry_program_(hash_text(program_tokens(geometry_program_text()))),
+      geometry_program_(hash_text(program_tokens(
+          planes_program_text(std::array{&plane_type("mask"), &plane_type("depth")})))),
       five_(form_of_parts({})),
       mask_(output_form("mask", "")),
       depth_(output_form("depth", "")) {

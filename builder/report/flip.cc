@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/report/flip.h"
 
-#include "builder/report/plane.h"
+#include "builder/report/channel.h"
 #include "tracer/base/error.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 constexpr double k_qc = 0.7, k_qf = 0.5, k_pc = 0.4, k_pt = 0.95, k_feature_deg = 0.082;
 
 using Color = std::array<double, 3>;
-using Planes = std::array<Plane, 3>;
+using Channels = std::array<Channel, 3>;
 
 /// Linear Rec.709 to XYZ, as exact fractions (the paper's supplement).
 constexpr double k_to_xyz[3][3] = {
@@ -80,21 +80,21 @@ double hyab(const Color& a, const Color& b) {
   return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
 }
 
-Planes planes_of(const Picture& picture) {
+Channels planes_of(const Picture& picture) {
   DS_ASSERT(picture.channels == 3);
-  const Plane empty(picture.width, picture.height);
-  Planes planes{empty, empty, empty};
+  const Channel empty(picture.width, picture.height);
+  Channels channels{empty, empty, empty};
   for (std::size_t i = 0; i < empty.values.size(); ++i) {
     const std::uint8_t* p = &picture.pixels[3 * i];
     const Color color = ycxcz({linear(p[0]), linear(p[1]), linear(p[2])});
     for (std::size_t c = 0; c < 3; ++c)
-      planes[c].values[i] = color[c];
+      channels[c].values[i] = color[c];
   }
-  return planes;
+  return channels;
 }
 
 /// A contrast sensitivity function as a sum of two Gaussians in degrees, a sqrt(pi / b) exp(-pi^2
-/// x^2 / b) each (table 1 of the paper). A Gaussian of the plane is a product of one along x and
+/// x^2 / b) each (table 1 of the paper). A Gaussian of the channel is a product of one along x and
 /// one along y.
 struct Sensitivity {
   double a1, b1, a2, b2;
@@ -106,7 +106,7 @@ constexpr std::array<Sensitivity, 3> k_sensitivities{{
 }};
 constexpr double k_widest_b = 0.04;
 
-Plane seen(const Plane& plane, const Sensitivity& s) {
+Channel seen(const Channel& channel, const Sensitivity& s) {
   const double ppd = k_flip_pixels_per_degree;
   const int radius = static_cast<int>(
       std::ceil(3 * std::sqrt(k_widest_b / (2 * std::numbers::pi * std::numbers::pi)) * ppd));
@@ -121,20 +121,21 @@ Plane seen(const Plane& plane, const Sensitivity& s) {
   };
   const Taps first = taps(s.b1);
   const double w1 = weight(s.a1, s.b1, first);
-  Plane out = filtered(plane, normalised(first), normalised(first));
+  Channel out = filtered(channel, normalised(first), normalised(first));
   if (s.a2 == 0) return out;
   const Taps second = taps(s.b2);
   const double w2 = weight(s.a2, s.b2, second);
-  const Plane other = filtered(plane, normalised(second), normalised(second));
+  const Channel other = filtered(channel, normalised(second), normalised(second));
   for (std::size_t i = 0; i < out.values.size(); ++i)
     out.values[i] = (w1 * out.values[i] + w2 * other.values[i]) / (w1 + w2);
   return out;
 }
 
 /// What the eye makes of the picture: filtered, back in the gamut, in Hunt-adjusted L*a*b*.
-std::vector<Color> perceived(const Planes& planes) {
-  const Planes blurred{seen(planes[0], k_sensitivities[0]), seen(planes[1], k_sensitivities[1]),
-                       seen(planes[2], k_sensitivities[2])};
+std::vector<Color> perceived(const Channels& channels) {
+  const Channels blurred{seen(channels[0], k_sensitivities[0]),
+                         seen(channels[1], k_sensitivities[1]),
+                         seen(channels[2], k_sensitivities[2])};
   std::vector<Color> out(blurred[0].values.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
     Color rgb = rgb_of_ycxcz({blurred[0].values[i], blurred[1].values[i], blurred[2].values[i]});
@@ -160,7 +161,7 @@ Taps balanced(Taps along) {
 enum class Feature { edge, point };
 
 /// Length of the gradient (edges) or of the second derivatives (points) at each pixel.
-std::vector<double> features(const Plane& y, Feature feature) {
+std::vector<double> features(const Channel& y, Feature feature) {
   const double sigma = 0.5 * k_feature_deg * k_flip_pixels_per_degree;
   const int radius = static_cast<int>(std::ceil(3 * sigma));
   const Taps gauss = gaussian_taps(sigma, radius);
@@ -169,8 +170,8 @@ std::vector<double> features(const Plane& y, Feature feature) {
   for (int x = -radius; x <= radius; ++x)
     middle[x] *= feature == Feature::edge ? -x : x * x / (sigma * sigma) - 1;
   along = balanced(along);
-  const Plane across = filtered(y, along, normalised(gauss));
-  const Plane down = filtered(y, normalised(gauss), along);
+  const Channel across = filtered(y, along, normalised(gauss));
+  const Channel down = filtered(y, normalised(gauss), along);
   std::vector<double> out(across.values.size());
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = std::hypot(across.values[i], down.values[i]);
@@ -185,8 +186,8 @@ double redistributed(double distance) {
   return power < knee ? k_pt / knee * power : k_pt + (power - knee) / (largest - knee) * (1 - k_pt);
 }
 
-Plane achromatic(const Planes& planes) {
-  Plane y = planes[0];
+Channel achromatic(const Channels& channels) {
+  Channel y = channels[0];
   for (double& value : y.values)
     value = (value + 16) / 116;
   return y;
@@ -196,12 +197,12 @@ Plane achromatic(const Planes& planes) {
 
 double flip(const Picture& reference, const Picture& test) {
   DS_ASSERT(reference.width == test.width && reference.height == test.height);
-  const Planes r = planes_of(reference);
-  const Planes t = planes_of(test);
+  const Channels r = planes_of(reference);
+  const Channels t = planes_of(test);
   const std::vector<Color> seen_r = perceived(r);
   const std::vector<Color> seen_t = perceived(t);
-  const Plane y_r = achromatic(r);
-  const Plane y_t = achromatic(t);
+  const Channel y_r = achromatic(r);
+  const Channel y_t = achromatic(t);
   const std::vector<double> edges_r = features(y_r, Feature::edge);
   const std::vector<double> edges_t = features(y_t, Feature::edge);
   const std::vector<double> points_r = features(y_r, Feature::point);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/report/ssim.h"
 
-#include "builder/report/plane.h"
+#include "builder/report/channel.h"
 #include "tracer/base/error.h"
 
 #include <cstdint>
@@ -14,22 +14,22 @@ constexpr double k_sigma = 1.5;
 constexpr double k_c1 = 0.01 * 255 * 0.01 * 255;
 constexpr double k_c2 = 0.03 * 255 * 0.03 * 255;
 
-Plane luma(const Picture& picture) {
+Channel luma(const Picture& picture) {
   DS_ASSERT(picture.channels == 3);
-  Plane plane(picture.width, picture.height);
+  Channel channel(picture.width, picture.height);
   const std::uint8_t* p = picture.pixels.data();
-  for (double& value : plane.values) {
+  for (double& value : channel.values) {
     value = 0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2];
     p += 3;
   }
-  return plane;
+  return channel;
 }
 
-Plane product(const Plane& a, const Plane& b) {
-  Plane plane = a;
-  for (std::size_t i = 0; i < plane.values.size(); ++i)
-    plane.values[i] *= b.values[i];
-  return plane;
+Channel product(const Channel& a, const Channel& b) {
+  Channel channel = a;
+  for (std::size_t i = 0; i < channel.values.size(); ++i)
+    channel.values[i] *= b.values[i];
+  return channel;
 }
 
 }  // namespace
@@ -38,14 +38,14 @@ std::optional<double> ssim(const Picture& x, const Picture& y) {
   DS_ASSERT(x.width == y.width && x.height == y.height);
   if (x.width <= 2 * k_radius || x.height <= 2 * k_radius) return std::nullopt;
   const Taps taps = normalised(gaussian_taps(k_sigma, k_radius));
-  const auto blur = [&](const Plane& plane) { return filtered(plane, taps, taps); };
-  const Plane a = luma(x);
-  const Plane b = luma(y);
-  const Plane mean_a = blur(a);
-  const Plane mean_b = blur(b);
-  const Plane square_a = blur(product(a, a));
-  const Plane square_b = blur(product(b, b));
-  const Plane cross = blur(product(a, b));
+  const auto blur = [&](const Channel& channel) { return filtered(channel, taps, taps); };
+  const Channel a = luma(x);
+  const Channel b = luma(y);
+  const Channel mean_a = blur(a);
+  const Channel mean_b = blur(b);
+  const Channel square_a = blur(product(a, a));
+  const Channel square_b = blur(product(b, b));
+  const Channel cross = blur(product(a, b));
   double sum = 0;
   // Windows that reach over the border are left out.
   for (int row = k_radius; row < x.height - k_radius; ++row)

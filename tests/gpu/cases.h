@@ -9,9 +9,9 @@
 
 namespace ds::gpu {
 
-/// What a case of a pack traces: a picture with its geometry, or, `timed`, a large picture or its
-/// geometry alone.
-enum class Traces { picture_and_geometry, picture, geometry };
+/// What a case of a pack traces: a picture with its mask and depth, or, `timed`, a large picture or
+/// these alone; or every plane that asks no light.
+enum class Traces { picture_and_geometry, picture, geometry, planes };
 
 struct Case {
   pictures::Picture picture;

@@ -13,6 +13,7 @@
 #include "tracer/accel/bvh.h"
 #include "tracer/base/error.h"
 #include "tracer/device/opencl.h"
+#include "tracer/device/plane_types.h"
 #include "tracer/device/program_text.h"
 
 #include <algorithm>
@@ -65,10 +66,17 @@ void record(Tracer& tracer, const gpu::Case& one) {
   const auto pixels =
       static_cast<std::uint64_t>(engine.width) * static_cast<std::uint64_t>(engine.height);
   const bool geometry_alone = one.traces == gpu::Traces::geometry;
-  if (one.timed && geometry_alone) gpu::time_case(pixels, "rays", "trace_geometry");
+  if (one.timed && geometry_alone) gpu::time_case(pixels, "rays", "trace_planes");
   if (one.timed && !geometry_alone)
     gpu::time_case(pixels * static_cast<std::uint64_t>(engine.spp), "samples", "trace_paths");
   tracer.set_scene(picture.scene);
+  if (one.traces == gpu::Traces::planes) {
+    std::vector<const PlaneType*> types;
+    for (const PlaneType& type : plane_types())
+      types.push_back(&type);
+    tracer.trace_planes(picture.camera, engine.width, engine.height, types);
+    return gpu::end_case();
+  }
   if (!geometry_alone) tracer.trace(picture.camera, engine);
   if (one.traces != gpu::Traces::picture)
     tracer.trace_geometry(picture.camera, engine.width, engine.height);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Surfaces that lie on each other. What lies on a floor is seen as if the floor were
 // infinitesimally lower, however rays round: in masks, depths and pictures, and through glass.
+#include "manifests/camera_geometry.h"
 #include "tests/hard/everywhere.h"
+#include "tests/render/ray_caster.h"
 #include "tracer/scene/sdl.h"
 
 #include <gtest/gtest.h>
@@ -66,30 +68,15 @@ void look_from(Picture& p, const Pose& pose, double elevation_deg, double distan
        middle);
 }
 
-/// Planar depth of the mesh alone by pixel, 0 where it is not met: Moeller and Trumbore, in double.
+/// Planar depth of the mesh alone by pixel, 0 where it is not met.
 std::vector<double> cast(const Mesh& mesh, const Camera& camera, int size) {
-  const Vec3d forward = normalized(camera.target - camera.position);
-  const Vec3d right = normalized(cross(forward, camera.up));
-  const Vec3d up = cross(right, forward);
-  const double half = std::tan(camera.fov_deg * M_PI / 360);
+  Object object;
+  object.mesh = mesh;
   std::vector<double> depth;
-  for (int i = 0; i < size * size; ++i) {
-    const double sx = (2 * (i % size + 0.5) / size - 1) * half;
-    const double sy = (1 - 2 * (i / size + 0.5) / size) * half;
-    const Vec3d d = forward + right * sx + up * sy;
-    double nearest = 0;
-    for (const auto& triangle : mesh.triangles) {
-      const Vec3d p0 = to_double(mesh.positions[triangle[0]]);
-      const Vec3d e1 = to_double(mesh.positions[triangle[1]]) - p0;
-      const Vec3d e2 = to_double(mesh.positions[triangle[2]]) - p0;
-      const Vec3d s = camera.position - p0, p = cross(d, e2), q = cross(s, e1);
-      const double determinant = dot(e1, p);
-      const double u = dot(s, p) / determinant, v = dot(d, q) / determinant;
-      const double t = dot(e2, q) / determinant;
-      if (u >= 0 && v >= 0 && u + v <= 1 && t > 0 && (nearest == 0 || t < nearest)) nearest = t;
-    }
-    depth.push_back(nearest);
-  }
+  for (const ray_caster::Hit& hit :
+       ray_caster::cast({object}, {true}, camera_intrinsics(camera.fov_deg, size, size),
+                        camera_pose(camera), size, size))
+    depth.push_back(hit.depth);
   return depth;
 }
 

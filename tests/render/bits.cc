@@ -3,11 +3,13 @@
 
 #include "tracer/base/error.h"
 #include "tracer/base/hash.h"
+#include "tracer/device/plane_types.h"
 #include "tracer/device/program_text.h"
 #include "tracer/device/program_tokens.h"
 #include "tracer/scene/sdl.h"
 
 #include <algorithm>
+#include <array>
 #include <span>
 
 namespace ds::pictures {
@@ -54,7 +56,9 @@ std::vector<Picture> wanted_pictures(const BitsRequest& request) {
 std::map<std::string, std::string> bits_of(const BitsRequest& request) {
   std::map<std::string, std::string> table;
   table["host_version"] = std::to_string(k_host_render_version);
-  table["geometry program"] = hash_text(program_tokens(geometry_program_text())).hex();
+  table["geometry program"] = hash_text(program_tokens(planes_program_text(
+                                            std::array{&plane_type("mask"), &plane_type("depth")})))
+                                  .hex();
   Tracer tracer(request.tracer);
   for (const Picture& picture : wanted_pictures(request)) {
     const Features features = features_of(picture.scene, picture.camera);

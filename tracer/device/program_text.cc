@@ -235,10 +235,11 @@ Features all_features() {
   return f;
 }
 
-std::string assemble(const std::string& definitions, std::string_view root_path) {
+std::string assemble(const std::string& definitions, std::span<const std::string> paths) {
   std::string text = definitions;
   std::set<std::string, std::less<>> done;
-  append_with_includes(root_path, done, text);
+  for (const std::string& path : paths)
+    append_with_includes(path, done, text);
   return text;
 }
 
@@ -267,24 +268,21 @@ std::string path_program_text(const Features& f) {
   head += trait_definition("DS_TRANSMITS", f, kernels::k_trait_transmits);
   if (f.guide) head += trait_definition("DS_GUIDED", f, kernels::k_trait_receives_caustics);
 
-  std::set<std::string, std::less<>> done;
-  std::string text = head;
+  std::vector<std::string> paths;
   for (const std::string& name : f.textures)
-    append_with_includes(fmt::format("tracer/kernels/textures/{}.h", name), done, text);
+    paths.push_back(fmt::format("tracer/kernels/textures/{}.h", name));
   for (const auto* list : {&f.materials, &f.choosers})
     for (const std::string& name : *list)
-      append_with_includes(fmt::format("tracer/kernels/materials/{}.h", name), done, text);
+      paths.push_back(fmt::format("tracer/kernels/materials/{}.h", name));
   for (const std::string& name : f.lights)
-    append_with_includes(fmt::format("tracer/kernels/lights/{}.h", name), done, text);
-  append_with_includes("tracer/kernels/path.cl", done, text);
-  return text;
+    paths.push_back(fmt::format("tracer/kernels/lights/{}.h", name));
+  paths.emplace_back("tracer/kernels/path.cl");
+  return assemble(head, paths);
 }
 
-std::string geometry_program_text() {
-  return assemble("", "tracer/kernels/geometry.cl");
-}
 std::string rays_program_text() {
-  return assemble("", "tracer/kernels/rays.cl");
+  const std::string path = "tracer/kernels/rays.cl";
+  return assemble("", std::span(&path, 1));
 }
 
 }  // namespace ds

@@ -3,6 +3,7 @@
 
 #include "tracer/scene/scene.h"
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,11 +54,10 @@ Features all_features();
 /// once, in order of inclusion. The lane count is not in it (it is the build option DS_LANES: it
 /// changes no bit of a picture).
 std::string path_program_text(const Features& features);
-/// Source of mask and depth; of single rays.
-std::string geometry_program_text();
+/// Source of single rays.
 std::string rays_program_text();
 
-/// A kernel file with its includes put in place; each file once.
-std::string assemble(const std::string& definitions, std::string_view root_path);
+/// Kernel files behind definitions, their includes put in place; each file once.
+std::string assemble(const std::string& definitions, std::span<const std::string> paths);
 
 }  // namespace ds

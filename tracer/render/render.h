@@ -82,6 +82,15 @@ struct Film {
 };
 
 struct FilmSums;
+struct PlaneType;
+
+/// What one ray a pixel, through its centre and the pinhole (no lens), finds of its type. Row 0 is
+/// the top, left to right; `type->width` numbers a pixel, by their bits where they are words.
+struct Plane {
+  const PlaneType* type = nullptr;
+  int width = 0, height = 0;
+  std::vector<float> values;
+};
 
 /// One ray a pixel, through its centre and the pinhole (no lens). Row 0 is the top.
 struct Geometry {
@@ -155,6 +164,10 @@ class Tracer {
   ProgramCounts programs() const;
   /// Of all pictures and geometry traced, where TracerOptions::count_rays was set; else none.
   RayCounts ray_counts() const;
+  /// Of these types, in this order; each has the same bits whatever the others are.
+  std::vector<Plane> trace_planes(const Camera& camera, int width, int height,
+                                  const std::vector<const PlaneType*>& types);
+  /// The planes mask and depth.
   Geometry trace_geometry(const Camera& camera, int width, int height);
   std::string device_name() const;
   /// Whether the device is this machine's processors: their time is then this process' own.

@@ -75,6 +75,7 @@ struct Material {
   /// Emitted radiance, W/(m^2 sr), all of LuxCore's gains applied. From the front only: the side on
   /// which the triangle's corners run counter-clockwise. As LuxCore.
   TextureRef emission;
+  std::uint32_t id = 0;  ///< as in the file, 0 where it has none; moves no picture
   /// A line for each input out of its physical range ("m.mat:3: ...kd: wanted ..."). No part of any
   /// key.
   std::vector<std::string> unphysical;

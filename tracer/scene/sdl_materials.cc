@@ -41,16 +41,27 @@ void finish_metal2(const SdlNode& node, Material& material) {
   set_input(material, "k", found->second.k);
 }
 
-/// glass: the old names of its indices.
-void finish_glass(const SdlNode& node, Material& material) {
-  constexpr std::array<std::array<std::string_view, 2>, 2> k_old_names = {
-      {{"interiorior", "iorinside"}, {"exteriorior", "ioroutside"}}};
+/// Of materials with these inputs: their old names.
+constexpr std::array<std::array<std::string_view, 2>, 2> k_old_names = {
+    {{"interiorior", "iorinside"}, {"exteriorior", "ioroutside"}}};
+
+void read_old_names(const SdlNode& node, Material& material) {
   const NodeType& row = material_types()[static_cast<std::size_t>(material.type)];
   for (const auto& [name, old_name] : k_old_names) {
-    const std::optional<TextureRef> value = node.texture(old_name);
-    if (value && !node.has(name))
-      material.inputs[static_cast<std::size_t>(find_input(row, name))] = *value;
+    const int input = find_input(row, name);
+    const std::optional<TextureRef> value =
+        input >= 0 ? node.texture(old_name) : std::optional<TextureRef>{};
+    if (value && !node.has(name)) material.inputs[static_cast<std::size_t>(input)] = *value;
   }
+}
+
+std::vector<SdlParameter> old_name_parameters(const NodeType& type) {
+  std::vector<SdlParameter> parameters;
+  for (const auto& [name, old_name] : k_old_names)
+    if (find_input(type, name) >= 0)
+      parameters.push_back({std::string(old_name), SdlType::scalar_input, "",
+                            fmt::format("old name of {}", name), limit_of(name).range});
+  return parameters;
 }
 
 int child_index(const SdlNode& node, std::string_view property) {
@@ -84,7 +95,6 @@ struct Finish {
 };
 
 const std::vector<Finish>& finishes() {
-  constexpr NumberRange k_index{.least = 0.01};
   static const std::vector<Finish> table{
       {"metal2",
        {{"preset",
@@ -101,10 +111,6 @@ const std::vector<Finish>& finishes() {
        {{"multibounce", SdlType::flag, "0",
          "no effect: what comes back after several reflections in the coat always counts"}},
        [](const SdlNode& node, Material&) { node.flag("multibounce"); }},
-      {"glass",
-       {{"iorinside", SdlType::scalar_input, "", "old name of interiorior", k_index},
-        {"ioroutside", SdlType::scalar_input, "", "old name of exteriorior", k_index}},
-       finish_glass},
       {"mix",
        {{"material1", SdlType::text, "", "a material defined above; must be given"},
         {"material2", SdlType::text, "", "likewise, with probability amount"}},
@@ -170,6 +176,8 @@ void read_material_node(SdlNode node) {
   node.read_row(material_types()[static_cast<std::size_t>(material.type)], material.inputs,
                 material.numbers);
   find_unphysical(node, material_types()[static_cast<std::size_t>(material.type)], material);
+  material.id = node.id("id");
+  read_old_names(node, material);
   for (const Finish& finish : finishes())
     if (finish.type == type) finish.finish(node, material);
   const int index = static_cast<int>(reader.scene.materials.size());
@@ -205,11 +213,16 @@ const SdlSection& material_section() {
                     "A `.mat` file is for the last material in it; others are its parts. What is a "
                     "number or a colour may be a texture, which stands above its use.",
                     "matte",
-                    emission_parameters(),
+                    concatenated({emission_parameters(),
+                                  {{"id",
+                                    SdlType::id,
+                                    "0",
+                                    "for the plane material_id",
+                                    {.least = 0, .most = 4294967295.0}}}}),
                     {}};
     for (const NodeType& type : material_types()) {
-      SdlTypeRow row{std::string(type.name), header_comment("materials", type),
-                     header_parameters(type)};
+      SdlTypeRow row{std::string(type.name), header_comment("materials", type.kernel_prefix),
+                     concatenated({header_parameters(type), old_name_parameters(type)})};
       for (const Finish& finish : finishes())
         if (finish.type == type.name)
           row.parameters = concatenated({std::move(row.parameters), finish.parameters});

@@ -208,7 +208,7 @@ Names property_names_of(SdlKind kind) {
 }
 
 // "importance", "directlightsampling", "visibilitymapcache" and "distribution" choose how LuxCore
-// samples, "id" of a light or material which output groups it is counted in, "photongi" and
+// samples, "id" of a light which output groups it is counted in, "photongi" and
 // "bumpsamplingdistance" act with features that are refused.
 constexpr NoEffect k_no_effect[] = {
     {SdlKind::texture, "randomizedtiling.enable", "0"},
@@ -218,7 +218,6 @@ constexpr NoEffect k_no_effect[] = {
     {SdlKind::material, "emission.directlightsampling.type", "*"},
     {SdlKind::material, "emission.theta", "90"},
     {SdlKind::material, "bumpsamplingdistance", "*"},
-    {SdlKind::material, "id", "*"},
     {SdlKind::material, "visibility.indirect.diffuse.enable", "1"},
     {SdlKind::material, "visibility.indirect.glossy.enable", "1"},
     {SdlKind::material, "visibility.indirect.specular.enable", "1"},

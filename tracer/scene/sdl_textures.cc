@@ -221,8 +221,8 @@ const SdlSection& texture_section() {
                     {},
                     {}};
     for (const NodeType& type : texture_types())
-      made.types.push_back(
-          {std::string(type.name), header_comment("textures", type), header_parameters(type)});
+      made.types.push_back({std::string(type.name), header_comment("textures", type.kernel_prefix),
+                            header_parameters(type)});
     for (const TextureReader& reader : readers()) {
       const auto row =
           std::find_if(made.types.begin(), made.types.end(),

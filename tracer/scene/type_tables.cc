@@ -97,8 +97,8 @@ InputLimit limit_of(std::string_view name) {
   return at == std::end(k_limits) ? InputLimit{name} : *at;
 }
 
-std::string header_comment(std::string_view folder, const NodeType& type) {
-  const std::string path = fmt::format("tracer/kernels/{}/{}.h", folder, type.kernel_prefix);
+std::string header_comment(std::string_view folder, std::string_view prefix) {
+  const std::string path = fmt::format("tracer/kernels/{}/{}.h", folder, prefix);
   const auto files = std::span(k_embedded_files, k_embedded_file_count);
   const auto file = std::find_if(files.begin(), files.end(),
                                  [&](const EmbeddedFile& f) { return path == f.path; });

@@ -67,9 +67,9 @@ std::span<const LightType> light_types();
 /// The row of a kernel prefix that there is.
 const LightType& light_type(std::string_view prefix);
 
-/// What the kernel header of a type says of it first: the paragraph at its top, on one line.
-/// `folder` is "materials" or "textures".
-std::string header_comment(std::string_view folder, const NodeType& type);
+/// What a kernel header says first: the paragraph at its top, on one line. `folder` is "materials",
+/// "textures" or "planes".
+std::string header_comment(std::string_view folder, std::string_view prefix);
 
 /// Row of the type, or -1.
 int find_type(std::span<const NodeType> types, std::string_view name);

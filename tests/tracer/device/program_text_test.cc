@@ -5,6 +5,7 @@
 
 #include "tests/render/pictures.h"
 #include "tracer/base/error.h"
+#include "tracer/device/plane_types.h"
 #include "tracer/device/program_tokens.h"
 #include "tracer/kernels/embedded.h"
 #include "tracer/scene/type_tables.h"
@@ -37,7 +38,7 @@ TEST(ProgramText, HoldsNoMaterialThatTheSceneDoesNotShow) {
     if (shown.name == "mix") continue;
     const std::string text = text_of(scene_of({shown.name}));
     for (const NodeType& other : material_types())
-      EXPECT_EQ(text.find(std::string(other.kernel_prefix) + "_sample") != text.npos,
+      EXPECT_EQ(text.find(" " + std::string(other.kernel_prefix) + "_sample(") != text.npos,
                 other.name == shown.name)
           << shown.name << " and " << other.name;
   }
@@ -92,11 +93,19 @@ std::size_t count_of(std::string_view text, std::string_view part) {
   return count;
 }
 
+std::string all_planes_text() {
+  std::vector<const PlaneType*> all;
+  for (const PlaneType& plane : plane_types())
+    all.push_back(&plane);
+  return planes_program_text(all);
+}
+
 TEST(ProgramText, EveryFileStandsInItOnce) {
   const std::string text = path_program_text(all_features());
   for (const EmbeddedFile& file : std::span(k_embedded_files, k_embedded_file_count)) {
     // The first line of code of each file that is part of the whole program.
-    if (std::string_view(file.path).ends_with("geometry.cl") ||
+    if (std::string_view(file.path).ends_with("first_hit.cl") ||
+        std::string_view(file.path).find("/plane") != std::string_view::npos ||
         std::string_view(file.path).ends_with("rays.cl"))
       continue;
     std::string_view body = file.text;
@@ -114,8 +123,8 @@ TEST(ProgramText, EveryFileStandsInItOnce) {
 
 TEST(ProgramText, NoBuiltInTranscendentalIsCalled) {
   // They give other bits on other devices.
-  const std::string text = program_tokens(path_program_text(all_features()) +
-                                          geometry_program_text() + rays_program_text());
+  const std::string text =
+      program_tokens(path_program_text(all_features()) + all_planes_text() + rays_program_text());
   const std::regex builtin(
       R"(\b(native_|half_)?(sin|cos|tan|exp2?|exp10|log2?|log10|powr?|pown|asin|acos|atan2?|rsqrt|cbrt|hypot|normalize|fast_\w+|mad)\s*\()");
   std::smatch match;
@@ -124,13 +133,13 @@ TEST(ProgramText, NoBuiltInTranscendentalIsCalled) {
 
 TEST(ProgramText, StrictProgramsSwitchContractionOff) {
   for (const std::string& text :
-       {path_program_text(all_features()), geometry_program_text(), rays_program_text()})
+       {path_program_text(all_features()), all_planes_text(), rays_program_text()})
     EXPECT_NE(text.find("pragma OPENCL FP_CONTRACT OFF"), std::string::npos);
 }
 
 TEST(Assemble, AMissingFileIsNamed) {
   try {
-    assemble("", "tracer/kernels/none.cl");
+    assemble("", std::vector<std::string>{"tracer/kernels/none.cl"});
     FAIL();
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("tracer/kernels/none.cl"), std::string::npos);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "builder/report/plane.h"
+#include "builder/report/channel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,24 +28,24 @@ Taps normalised(Taps taps) {
   return taps;
 }
 
-Plane filtered(const Plane& plane, const Taps& across, const Taps& down) {
-  Plane half(plane.width, plane.height);
+Channel filtered(const Channel& channel, const Taps& across, const Taps& down) {
+  Channel half(channel.width, channel.height);
   const int rx = radius_of(across);
   const double* const tap_x = across.data() + rx;
-  for (int y = 0; y < plane.height; ++y)
-    for (int x = 0; x < plane.width; ++x) {
+  for (int y = 0; y < channel.height; ++y)
+    for (int x = 0; x < channel.width; ++x) {
       double sum = 0;
       for (int i = -rx; i <= rx; ++i)
-        sum += tap_x[i] * plane.at(std::clamp(x + i, 0, plane.width - 1), y);
+        sum += tap_x[i] * channel.at(std::clamp(x + i, 0, channel.width - 1), y);
       half.at(x, y) = sum;
     }
-  Plane whole(plane.width, plane.height);
+  Channel whole(channel.width, channel.height);
   const int ry = radius_of(down);
   const double* const tap_y = down.data() + ry;
   for (int i = -ry; i <= ry; ++i)
-    for (int y = 0; y < plane.height; ++y) {
-      const int from = std::clamp(y + i, 0, plane.height - 1);
-      for (int x = 0; x < plane.width; ++x)
+    for (int y = 0; y < channel.height; ++y) {
+      const int from = std::clamp(y + i, 0, channel.height - 1);
+      for (int x = 0; x < channel.width; ++x)
         whole.at(x, y) += tap_y[i] * half.at(x, from);
     }
   return whole;

@@ -7,11 +7,11 @@
 namespace ds {
 
 /// One channel of a picture in double; row 0 is the top.
-struct Plane {
+struct Channel {
   int width = 0, height = 0;
   std::vector<double> values;
 
-  Plane(int columns, int rows)
+  Channel(int columns, int rows)
       : width(columns),
         height(rows),
         values(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)) {}
@@ -33,8 +33,8 @@ Taps gaussian_taps(double sigma, int radius);
 /// `taps` divided by their sum.
 Taps normalised(Taps taps);
 
-/// The correlation of a plane with the product of both filters: `across` along x, `down` along y.
+/// The correlation of a channel with the product of both filters: `across` along x, `down` along y.
 /// Beyond the border the nearest pixel stands in.
-Plane filtered(const Plane& plane, const Taps& across, const Taps& down);
+Channel filtered(const Channel& channel, const Taps& across, const Taps& down);
 
 }  // namespace ds

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the host asks of a plane: NAME_traits in its header is a sum of these.
+#pragma once
+
+enum {
+  // A plane reads ...
+  k_plane_surface = 1,        ///< HitPoint::surface
+  k_plane_normals = 2,        ///< ... its shading normal
+  k_plane_uvs = 4,            ///< ... its u and v
+  k_plane_objects = 8,        ///< HitPoint::object of others than the model
+  k_plane_material_ids = 16,  ///< HitPoint::material_id
+  k_plane_alone = 32,         ///< nothing but the model: the rest of the scene is not there
+  // Its numbers are ...
+  k_plane_words = 64,        ///< natural numbers, by their bits
+  k_plane_exr = 128,         ///< to be had as EXR, of floats or halves
+  k_plane_png_share = 256,   ///< as PNG: [0, 1] in the whole range
+  k_plane_png_signed = 512,  ///< as PNG: [-1, 1] in the whole range
+  k_plane_png_milli = 1024,  ///< as PNG: thousandths
+  k_plane_png_words = 2048,  ///< as PNG: the number itself
+};

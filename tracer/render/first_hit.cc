@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// Planes of a picture that ask no light: the tracer's pass of one ray a pixel.
+#include "tracer/base/error.h"
+#include "tracer/render/tracer_state.h"
+#include "tracer/render/view.h"
+#include "tracer/scene/sdl.h"
+#include "tracer/scene/type_tables.h"
+
+#include <algorithm>
+#include <span>
+
+namespace ds {
+namespace {
+
+/// The model in a scene of nothing else, and of no texture or light. Without a triangle where there
+/// is no model.
+Scene model_alone(const Scene& scene) {
+  Scene alone;
+  Material& matte = alone.materials.emplace_back();
+  const NodeType& type = material_types()[static_cast<std::size_t>(matte.type)];
+  for (const InputType& input : type.inputs)
+    matte.inputs.push_back({{input.default_value, input.default_value, input.default_value}, -1});
+  for (const NumberType& number : type.numbers)
+    matte.numbers.push_back(number.default_value);
+  for (const Object& object : scene.objects) {
+    if (object.id != k_model_object_id) continue;
+    alone.objects.push_back(object);
+    alone.objects.back().material = 0;
+  }
+  return alone;
+}
+
+bool has_triangles(const Scene& scene) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [](const Object& object) { return !object.mesh.triangles.empty(); });
+}
+
+std::vector<std::uint32_t> material_ids(const Scene& scene) {
+  std::vector<std::uint32_t> ids;
+  for (const Material& material : scene.materials)
+    ids.push_back(material.id);
+  return ids;
+}
+
+}  // namespace
+
+Kernel& Tracer::State::plane_kernel(const std::vector<const PlaneType*>& types) {
+  const auto found = plane_kernels.find(types);
+  if (found != plane_kernels.end()) return found->second;
+  const Program program =
+      device.build(planes_program_text(types), k_strict_options, options.cache_folder);
+  return plane_kernels.emplace(types, device.kernel(program, "trace_planes")).first->second;
+}
+
+std::vector<Plane> Tracer::State::launch_planes(const DeviceScene& of, const Scene& seen,
+                                                const Camera& camera, int width, int height,
+                                                const std::vector<const PlaneType*>& types) {
+  EngineSettings size;
+  size.width = width;
+  size.height = height;
+  const kernels::ViewData view = view_data(camera, size, ray_start_m(seen, camera, width, height));
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  int numbers = 0;
+  for (const PlaneType* type : types)
+    numbers += type->width;
+  const Buffer view_buffer = device.upload(std::as_bytes(std::span(&view, 1)));
+  const Buffer planes =
+      device.make_buffer(pixels * static_cast<std::size_t>(numbers) * sizeof(float));
+  const Buffer ids = device.upload(material_ids(seen));
+  Kernel& kernel = plane_kernel(types);
+  unsigned argument = 0;
+  for (const Buffer* b : {&of.nodes, &of.leaves, &of.triangles, &ids, &view_buffer, &planes})
+    kernel.set(argument++, *b);
+  device.run(kernel, 0, round_up(pixels, local_size), local_size);
+  if (options.count_rays) ray_counts.geometry += pixels;
+  std::vector<float> all(pixels * static_cast<std::size_t>(numbers));
+  device.read(planes, std::as_writable_bytes(std::span(all)));
+  std::vector<Plane> result;
+  auto from = all.begin();
+  for (const PlaneType* type : types) {
+    const auto end = from + static_cast<std::ptrdiff_t>(pixels) * type->width;
+    result.push_back({type, width, height, std::vector<float>(from, end)});
+    from = end;
+  }
+  return result;
+}
+
+std::vector<Plane> Tracer::trace_planes(const Camera& camera, int width, int height,
+                                        const std::vector<const PlaneType*>& types) {
+  State& s = *state_;
+  if (!s.scene) fail(ErrorKind::device, "no scene was set before tracing");
+  std::vector<const PlaneType*> of_scene, of_model;
+  for (const PlaneType* type : types)
+    ((type->traits & kernels::k_plane_alone) != 0 ? of_model : of_scene).push_back(type);
+  std::vector<Plane> traced, of_alone;
+  if (!of_scene.empty()) {
+    if (!s.packed_for) {
+      // Any numbering will do: no material is asked.
+      Features features = features_of(*s.scene, camera);
+      features.lens = false;
+      s.take(pack_scene(*s.scene, features, s.quality(), s.options.bvh_width), features);
+    }
+    traced = s.launch_planes(s.device_scene, *s.scene, camera, width, height, of_scene);
+  }
+  if (!of_model.empty()) {
+    const Scene alone = model_alone(*s.scene);
+    if (has_triangles(alone)) {
+      if (!s.device_model)
+        s.device_model = upload(s.device, pack_scene(alone, features_of(alone, camera), s.quality(),
+                                                     s.options.bvh_width));
+      of_alone = s.launch_planes(*s.device_model, alone, camera, width, height, of_model);
+    } else {
+      for (const PlaneType* type : of_model)
+        of_alone.push_back(
+            {type, width, height,
+             std::vector<float>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                                static_cast<std::size_t>(type->width))});
+    }
+  }
+  std::vector<Plane> planes;
+  auto next = traced.begin(), next_alone = of_alone.begin();
+  for (const PlaneType* type : types)
+    planes.push_back(
+        std::move((type->traits & kernels::k_plane_alone) != 0 ? *next_alone++ : *next++));
+  return planes;
+}
+
+Geometry Tracer::trace_geometry(const Camera& camera, int width, int height) {
+  std::vector<Plane> planes =
+      trace_planes(camera, width, height, {&plane_type("mask"), &plane_type("depth")});
+  Geometry geometry{width, height, {}, std::move(planes[1].values)};
+  geometry.mask.reserve(planes[0].values.size());
+  for (const float covered : planes[0].values)
+    geometry.mask.push_back(covered > 0 ? 255 : 0);
+  return geometry;
+}
+
+}  // namespace ds
