@@ -78,10 +78,11 @@ bool fits_manifest(const std::string& name) {
   return !odd;
 }
 
-/// What a folder holds, hidden entries left out.
+/// What a folder holds, hidden entries left out but for their number.
 struct Listing {
   std::vector<fs::path> found;                ///< what belongs
   std::map<std::string, std::size_t> others;  ///< files that do not, by ending
+  std::vector<std::string> hidden;            ///< names of hidden entries that else would belong
   std::size_t dead_links = 0;
   std::size_t specials = 0;        ///< pipes, sockets, devices: of whatever ending
   std::size_t unread_folders = 0;  ///< that hold what would belong
@@ -110,10 +111,12 @@ class FolderWalk {
   }
 
  private:
+  static bool is_hidden(const fs::path& path) { return file_name(path).starts_with('.'); }
+
   static std::vector<fs::path> entries(const fs::path& folder, std::error_code& error) {
     std::vector<fs::path> paths;
     for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
-      if (!file_name(at->path()).starts_with('.')) paths.push_back(at->path());
+      paths.push_back(at->path());
     std::sort(paths.begin(), paths.end());
     return paths;
   }
@@ -127,6 +130,10 @@ class FolderWalk {
   void walk(const fs::path& folder, std::error_code& error) {
     for (const fs::path& path : entries(folder, error)) {
       std::error_code ignored;
+      if (is_hidden(path)) {
+        if (kind_.belongs(path)) listing_.hidden.push_back(file_name(path));
+        continue;
+      }
       if (kind_.belongs(path))
         listing_.found.push_back(path);
       else if (fs::is_symlink(path, ignored) && !fs::exists(path, ignored))
@@ -153,6 +160,7 @@ class FolderWalk {
   bool holds_one(const fs::path& folder) {
     std::error_code ignored;
     for (const fs::path& path : entries(folder, ignored)) {
+      if (is_hidden(path)) continue;
       if (kind_.belongs(path)) return true;
       if (fs::is_directory(path, ignored) && first_visit(path) && holds_one(path)) return true;
     }
@@ -178,6 +186,10 @@ std::string unused_text(const Listing& listing, const AssetKind& kind) {
     parts.push_back(fmt::format("{} file{} of other endings ({}); .ply and .off are read", count,
                                 count == 1 ? "" : "s", fmt::join(endings, ", ")));
   }
+  if (const std::size_t count = listing.hidden.size(); count > 0)
+    parts.push_back(fmt::format("{} whose name{} with a dot, which hides {} ({}{})", count,
+                                count == 1 ? " begins" : "s begin", count == 1 ? "it" : "them",
+                                listing.hidden.front(), count == 1 ? "" : ", ..."));
   if (listing.specials > 0)
     parts.push_back(fmt::format("{} that {} (a pipe, socket or device)", listing.specials,
                                 listing.specials == 1 ? "is no file" : "are no files"));

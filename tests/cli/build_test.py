@@ -15,6 +15,23 @@ from harness import IMAGES, SAMPLES, TinyCase, main
 
 
 class BuildTest(TinyCase):
+    def test_hidden_files_are_no_models(self):
+        self.build()
+        (self.tiny / "models/.DS_Store").write_bytes(b"\0\0\0\1Bud1")
+        (self.tiny / "models/.git").mkdir()
+        (self.tiny / "models/.git/old.off").write_text("not looked at")
+        run = self.run_it("build", self.recipe, "-o", self.out, "--set", "models.recursive=true")
+        self.assertIn(f"0 built, {IMAGES} reused", run.out)
+        self.assertNotIn("not used", run.err)
+        # What macOS leaves beside a file on other file systems: of the same ending, and no model.
+        for count, name in enumerate(("._box.off", "._tetra.ply"), 1):
+            (self.tiny / "models" / name).write_bytes(b"\0\5\x16\7\0\2\0\0Mac OS X")
+            run = self.run_it("build", self.recipe, "-o", self.out)
+            self.assertIn(f"0 built, {IMAGES} reused", run.out)
+            self.assertEqual(run.err.count("dsbuild: warning: models.dir: not used of"), 1, run)
+            self.assertIn("1 whose name begins with a dot, which hides it (._box.off)" if count == 1 else
+                          "2 whose names begin with a dot, which hides them (._box.off, ...)", run.err)
+
     def test_second_build_makes_nothing(self):
         first = self.build()
         self.assert_counts(first, images=IMAGES, built=IMAGES, reused=0, failed=0, traced_samples=IMAGES * SAMPLES)

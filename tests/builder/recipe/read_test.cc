@@ -269,6 +269,11 @@ std::string warnings(const RecipeFolder& folder, std::string_view text) {
 
 TEST_F(RecipeReadTest, CountsWhatIsNotUsedOfTheModelsFolder) {
   fs::remove(folder_.path() / "models/notes.txt");
+  EXPECT_EQ(
+      warnings(folder_, ""),
+      "dsbuild: warning: models.dir: not used of models: 1 whose name begins with a dot, which "
+      "hides it (.hidden.ply)\n");
+  fs::remove(folder_.path() / "models/.hidden.ply");
   folder_.add("models/LICENSE");
   EXPECT_EQ(warnings(folder_, ""), "");
   folder_.add("models/a.obj");
@@ -292,6 +297,7 @@ TEST_F(RecipeReadTest, CountsWhatIsNotUsedOfTheModelsFolder) {
 
 TEST_F(RecipeReadTest, CountsPipesAndSocketsOfAnyName) {
   fs::remove(folder_.path() / "models/notes.txt");
+  fs::remove(folder_.path() / "models/.hidden.ply");
   ASSERT_EQ(::mkfifo((folder_.path() / "models/pipe.off").c_str(), 0600), 0);
   EXPECT_EQ(
       warnings(folder_, ""),
