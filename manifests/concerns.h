@@ -20,6 +20,8 @@ namespace ds {
 ///                    than it gets, or another value that no real surface has
 ///   sizes_unlikely   images of lengths that hardly go together, as where one is in millimetres: the
 ///                    camera inside the model, the lens wider than it, ...
+///   names_by_case    images whose name differs from another's in upper and lower case only: where a
+///                    file system does not tell these apart, their files are one
 struct Concern {
   std::string name;
   std::uint64_t count = 0;            ///< 0: none

@@ -32,6 +32,9 @@ constexpr ConcernText k_texts[] = {
     {"assets_unphysical", "materials and environments have values that no real surface has", "",
      true},
     {"sizes_unlikely", "images are of lengths that hardly go together", "", true},
+    {"names_by_case",
+     "images have a name that differs from another's in upper and lower case only; on a disk that "
+     "does not tell them apart (macOS, Windows) their files are one"},
 };
 
 const ConcernText& text_of(const Concern& concern) {

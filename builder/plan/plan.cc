@@ -216,6 +216,33 @@ Concern count_unphysical(const std::vector<PlannedImage>& images, Inputs& inputs
   return concern;
 }
 
+/// A to z only: which other letters are one depends on the file system.
+std::string in_lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return text;
+}
+
+/// Counts the images whose files another's would replace where case does not count.
+Concern count_names_by_case(const std::vector<PlannedImage>& images) {
+  std::vector<std::pair<Hash128, std::size_t>> names;
+  names.reserve(images.size());
+  for (std::size_t i = 0; i < images.size(); ++i)
+    names.emplace_back(hash_text(in_lower_case(images[i].spec.id)), i);
+  std::sort(names.begin(), names.end());
+  std::vector<std::size_t> concerned;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if ((i > 0 && names[i - 1].first == names[i].first) ||
+        (i + 1 < names.size() && names[i + 1].first == names[i].first))
+      concerned.push_back(names[i].second);
+  std::sort(concerned.begin(), concerned.end());
+  Concern concern{"names_by_case", 0, images.size(), {}};
+  for (const std::size_t i : concerned)
+    add_example(concern, images[i].spec.id);
+  return concern;
+}
+
 }  // namespace
 
 std::uint64_t PlannedImage::samples() const {
@@ -274,7 +301,8 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
   plan.forgets = planner.forgets();
   std::vector<std::string> unlikely;
   plan.concerns = {count_unphysical(plan.images, inputs),
-                   find_unlikely_sizes(dataset.recipe, plan.images, inputs, unlikely)};
+                   find_unlikely_sizes(dataset.recipe, plan.images, inputs, unlikely),
+                   count_names_by_case(plan.images)};
   for (const std::string& line : unlikely)
     warn(line);
   snapshot.reset();

@@ -8,7 +8,7 @@ from harness import IMAGES, TinyCase, main
 
 NONE = {name: 0 for name in ("mask_empty", "mask_at_frame", "mask_small", "picture_black", "picture_white",
                              "models_absent", "models_unlisted", "classes_empty", "splits_empty", "assets_unphysical",
-                             "sizes_unlikely")}
+                             "sizes_unlikely", "names_by_case")}
 
 
 def grey_png(path):
@@ -190,6 +190,22 @@ class ConcernsTest(TinyCase):
         for shard in "1/8", "2/8":
             concerns, err = self.concerns("--shard", shard)
             self.assertEqual(concerns["classes_empty"], 1, err)
+
+    def test_names_that_differ_in_case_only(self):
+        (self.tiny / "models/Box.off").write_text((self.tiny / "models/box.off").read_text())
+        concerns, err = self.concerns()
+        self.assertEqual(concerns, {**NONE, "names_by_case": IMAGES})
+        self.assertEqual(err.count("upper and lower case only"), 1)
+        self.assertIn(f"{IMAGES} of {IMAGES * 3 // 2} images have a name that differs", err)
+        self.assertRegex(err, "Box.off/0, Box.off/1, Box.off/2 and 5 more")
+        self.concerns("--strict", code=1)
+        # Materials are in an image's name where each is shown.
+        (self.tiny / "models/Box.off").unlink()
+        (self.tiny / "materials/RED.mat").write_text(
+            (self.tiny / "materials/red.mat").read_text().replace("materials.red", "materials.RED"))
+        self.assertEqual(self.concerns()[0]["names_by_case"], 0)
+        every = self.concerns("--set", "materials.assign=all", "--set", "camera.views=[0]")[0]
+        self.assertEqual(every["names_by_case"], 2 * 2)
 
     def test_cameras_that_fit_cut_nothing_off(self):
         wedge = self.tiny / "models/wedge.off"  # off its middle, and of another shape
