@@ -118,6 +118,20 @@ const Sphere& Inputs::model_sphere(const std::filesystem::path& file,
   });
 }
 
+/// A material's images are looked at by every command, and read only where they are not those of
+/// the command before.
+Hash128 Inputs::content_of_image(const std::filesystem::path& file) {
+  return once(contents_, file, [this](const auto& path) {
+    // Taken before the bytes are read, as for models.
+    const std::optional<FileStamp> stamp = stamp_of(path);
+    if (stamp && stamps_ == Stamps::trust)
+      if (const auto known = database_.find_content(path, *stamp)) return *known;
+    const Hash128 content = content_hash(path);
+    if (stamp && !is_racy(*stamp)) new_contents_.push_back({path, *stamp, content});
+    return content;
+  });
+}
+
 /// Nothing of an image that cannot be read: its error is that of the images that need it.
 std::optional<InputBounds> Inputs::image_bounds(const Image& image) {
   CanonicalText use;
@@ -148,7 +162,8 @@ void Inputs::look_at_pixels(Scene& scene) {
 
 const Scene& Inputs::material(const std::filesystem::path& file) {
   return once(materials_, file, [this](const auto& path) {
-    Scene scene = read_material(path);
+    Scene scene =
+        read_material(path, [this](const auto& image) { return content_of_image(image); });
     look_at_pixels(scene);
     return scene;
   });
@@ -159,7 +174,8 @@ const Scene& Inputs::environment(const std::filesystem::path& folder) {
     const std::int64_t began_ns = now_ns();
     const std::uint64_t warnings = warning_count();
     std::vector<std::filesystem::path> files;
-    Scene scene = read_environment(path, &files);
+    Scene scene = read_environment(path, &files,
+                                   [this](const auto& image) { return content_of_image(image); });
     look_at_pixels(scene);
     // What there is to warn of is to be said by each command.
     if (warning_count() == warnings)
@@ -188,12 +204,15 @@ void Inputs::keep_known(const std::string& question, std::string answer) {
 
 void Inputs::remember() {
   put_known(database_, program_, std::exchange(new_known_, {}));
-  if (new_models_.empty() && new_spheres_.empty() && new_bounds_.empty()) return;
+  if (new_models_.empty() && new_spheres_.empty() && new_bounds_.empty() && new_contents_.empty())
+    return;
   Transaction transaction(database_.connection());
   for (const NewModel& model : new_models_) {
     if (model.stamp) database_.put_content(model.file, *model.stamp, model.content);
     database_.put_model(model.content, k_host_render_version, model.known);
   }
+  for (const NewContent& image : new_contents_)
+    database_.put_content(image.file, image.stamp, image.content);
   for (const auto& [part, sphere] : new_spheres_)
     database_.put_sphere(part, k_host_render_version,
                          {sphere.centre.x, sphere.centre.y, sphere.centre.z, sphere.radius_m});
@@ -203,6 +222,7 @@ void Inputs::remember() {
         {bounds.low.x, bounds.low.y, bounds.low.z, bounds.high.x, bounds.high.y, bounds.high.z});
   transaction.commit();
   new_bounds_.clear();
+  new_contents_.clear();
   new_models_.clear();
   new_spheres_.clear();
 }

@@ -82,6 +82,7 @@ class Inputs {
   };
   const ModelFacts& model(const std::filesystem::path& file);
   KnownModel look_at_model(const std::filesystem::path& file);
+  Hash128 content_of_image(const std::filesystem::path& file);
   std::optional<InputBounds> image_bounds(const Image& image);
   void look_at_pixels(Scene& scene);
 
@@ -99,6 +100,13 @@ class Inputs {
   Known<EnvironmentFacts> environment_facts_;
   std::string program_;  ///< running_program
   std::map<std::string, std::string> new_known_;
+  Known<Hash128> contents_;  ///< of images
+  struct NewContent {
+    std::filesystem::path file;
+    FileStamp stamp;
+    Hash128 content;
+  };
+  std::vector<NewContent> new_contents_;
   std::vector<NewModel> new_models_;
   Known<Sphere> spheres_;
   std::map<Hash128, Sphere> new_spheres_;      ///< by the hash of the model part

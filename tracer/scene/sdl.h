@@ -4,10 +4,14 @@
 #include "tracer/scene/scene.h"
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace ds {
+
+/// Hash of a file's bytes, from whoever may know it without reading them. Throws as content_hash.
+using ContentOf = std::function<Hash128(const std::filesystem::path& file)>;
 
 /// LuxCore SDL as files on disk. Every reader throws Error(asset) holding all findings, each
 /// "file:line: ...": a syntax error, an unknown property of a known thing, a type or property
@@ -17,8 +21,8 @@ namespace ds {
 /// Reads one material file: `scene.textures.*` and `scene.materials.*`. The material the file is
 /// for is the last one defined (others are its parts). No objects, lights or camera may stand in
 /// it. Result: a Scene of images, textures and materials only, whose last material is the one
-/// wanted.
-Scene read_material(const std::filesystem::path& file);
+/// wanted. `content_of` is asked for images' hashes; content_hash where there is none.
+Scene read_material(const std::filesystem::path& file, const ContentOf& content_of = {});
 
 /// Reads an environment folder: `environment.scn` (textures, materials, shapes, objects, lights)
 /// and, if there, `environment.cfg` (film.imagepipeline.*: tone map). PLY and image paths are
@@ -26,7 +30,8 @@ Scene read_material(const std::filesystem::path& file);
 /// `files` gets the files that were read, or looked for in vain: where none of them changes, neither
 /// does what is read.
 Scene read_environment(const std::filesystem::path& folder,
-                       std::vector<std::filesystem::path>* files = nullptr);
+                       std::vector<std::filesystem::path>* files = nullptr,
+                       const ContentOf& content_of = {});
 
 /// The environment with one more object: `mesh` in `material`'s last material, object id
 /// `k_model_object_id`. Indices of the material's scene are moved behind the environment's. The

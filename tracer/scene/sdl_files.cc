@@ -20,11 +20,12 @@ void require_file(const std::filesystem::path& file) {
 
 }  // namespace
 
-Scene read_material(const std::filesystem::path& file) {
+Scene read_material(const std::filesystem::path& file, const ContentOf& content_of) {
   require_file(file);
   Diagnostics diagnostics(ErrorKind::asset);
   PropertySet properties = PropertySet::read(file, diagnostics);
   SdlReader reader(std::move(properties), file.parent_path(), diagnostics);
+  if (content_of) reader.content_of = content_of;
   mend_section_names(reader);
   read_textures(reader);
   read_materials(reader);
@@ -39,7 +40,7 @@ Scene read_material(const std::filesystem::path& file) {
 }
 
 Scene read_environment(const std::filesystem::path& folder,
-                       std::vector<std::filesystem::path>* files) {
+                       std::vector<std::filesystem::path>* files, const ContentOf& content_of) {
   const std::filesystem::path scene_file = folder / "environment.scn";
   const std::filesystem::path film_file = folder / "environment.cfg";
   require_file(scene_file);
@@ -47,6 +48,7 @@ Scene read_environment(const std::filesystem::path& folder,
   PropertySet scene_properties = PropertySet::read(scene_file, diagnostics);
   SdlReader reader(std::move(scene_properties), folder, diagnostics);
   reader.environment = true;
+  if (content_of) reader.content_of = content_of;
   mend_section_names(reader);
   read_textures(reader);
   read_materials(reader);

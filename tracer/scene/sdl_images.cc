@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracer/base/hash_stream.h"
 #include "tracer/scene/sdl_reader.h"
 
 #include <algorithm>
@@ -111,7 +110,7 @@ int read_image(const SdlNode& node, double gain, ImageUse use) {
   image.channel = choose(node, "channel", k_channels);
   choose(node, "storage", k_storages);
   if (!file) return -1;
-  image.content = content_hash(*file);
+  image.content = reader.content_of(*file);
   std::vector<Image>& images = reader.scene.images;
   const auto same = std::find_if(images.begin(), images.end(),
                                  [&](const Image& other) { return same_reading(image, other); });

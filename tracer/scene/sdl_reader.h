@@ -2,8 +2,10 @@
 #pragma once
 
 #include "tracer/base/error.h"
+#include "tracer/base/hash_stream.h"
 #include "tracer/scene/properties.h"
 #include "tracer/scene/scene.h"
+#include "tracer/scene/sdl.h"
 #include "tracer/scene/sdl_names.h"
 #include "tracer/scene/sdl_parameters.h"
 #include "tracer/scene/type_tables.h"
@@ -55,6 +57,7 @@ struct SdlReader {
   /// blame, so that one mistake is one finding.
   std::set<std::string> broken;
   std::vector<std::filesystem::path> files;  ///< that properties name
+  ContentOf content_of = content_hash;       ///< of images
   std::set<std::string> missed;  ///< names that were looked for in vain, and said to be so
 };
 

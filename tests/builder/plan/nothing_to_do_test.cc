@@ -138,5 +138,33 @@ TEST_F(NothingToDo, IsOneLineOfTheLogAndNoOtherWrite) {
   EXPECT_EQ(stamp_of(output() / ".dsbuild/dataset"), pointer);
 }
 
+TEST_F(NothingToDo, ReadsNoImageOfAMaterialAgain) {
+  const fs::path image = recipe_folder() / "textures/grey.pfm";
+  const auto write = [&](float value) {
+    std::string bytes = "Pf\n1 1\n-1.0\n";
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+    write_file_atomic(image, bytes);
+  };
+  fs::create_directory(image.parent_path());
+  write(0.25F);
+  for (const char* name : {"red", "green"})
+    write_file_atomic(recipe_folder() / "materials" / (std::string(name) + ".mat"),
+                      fmt::format("scene.textures.t.type = imagemap\n"
+                                  "scene.textures.t.file = ../textures/grey.pfm\n"
+                                  "scene.materials.{0}.type = matte\n"
+                                  "scene.materials.{0}.kd = t\n",
+                                  name));
+  std::this_thread::sleep_for(std::chrono::milliseconds(2700));  // until its stamp tells it
+  build();
+  Opened opened({image.parent_path()});
+  EXPECT_TRUE(stale().empty());
+  EXPECT_EQ(opened.files(), 0);
+  EXPECT_TRUE(stale(Stamps::ignore).empty());
+  EXPECT_EQ(opened.files(), 1) << "once, though two materials show it";
+  write(0.5F);
+  opened.files();
+  EXPECT_EQ(stale().size(), k_images);
+}
+
 }  // namespace
 }  // namespace ds
