@@ -43,7 +43,7 @@ inline constexpr int k_manifest_format = 2;
 /// One file of a dataset.
 struct FileRecord {
   std::string path;  ///< relative to the dataset's folder, "/" between parts
-  std::string kind;  ///< "image", "mask", "depth"
+  std::string kind;  ///< "image", or a plane's name: "mask", "depth"
   FileHashes hashes;
   Hash128 pixels;  ///< of the decoded pixels: what two machines with different encoders agree on
 };
@@ -64,9 +64,17 @@ struct ImageRecord {
   /// samples; null in the file where one sample a pixel tells nothing of it.
   std::optional<double> relative_error{};
   FilmFacts film{};  ///< "film": samples taken, samples refused by kind, the error's 95 % interval
-  PixelCounts pixel_counts{};  ///< an object of the counts that were made
+  /// An object of the counts that were made; with those of mask and amodal mask the line has
+  /// "visible_fraction" too, their quotient.
+  PixelCounts pixel_counts{};
   Hash128 render_key, files_key;
   std::array<Hash128, 5> parts{};  ///< model, material, environment, camera, engine
+};
+
+/// How a plane of each image is stored and what its numbers are.
+struct PlaneRecord {
+  std::string encoding;  ///< "png8", "png16", "half", "exr"
+  std::string convention;
 };
 
 struct DatasetRecord {
@@ -77,6 +85,8 @@ struct DatasetRecord {
   std::vector<std::string> class_paths;
   std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< "images", "models", "train", ...
   std::vector<LicenceRecord> licences;  ///< found beside the assets, as group_licences gives them
+  /// By name, of the files beside the picture. Not there where there are none.
+  std::vector<std::pair<std::string, PlaneRecord>> planes{};
   /// Model -> what its file held that no mesh can, and how often, by MeshReport's names. Only
   /// models that were mended; "mended_models" is not there where none was.
   std::vector<std::pair<std::string, MendedDamage>> mended_models{};

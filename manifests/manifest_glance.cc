@@ -93,6 +93,7 @@ std::optional<LineGlance> glance_at(std::string_view line) {
   const auto count = [&](std::string_view key, std::optional<std::uint64_t>& to) {
     if (counts.has(key)) to = counts.count(key);
   };
+  count(R"("amodal":)", glance.pixel_counts.amodal);
   count(R"("frame":)", glance.pixel_counts.frame);
   count(R"("lit":)", glance.pixel_counts.lit);
   count(R"("model":)", glance.pixel_counts.model);

@@ -273,6 +273,21 @@ void read_mended_models(const json& owner, const SourcePlace& place, Diagnostics
                });
 }
 
+/// Not there where images have no plane, or an older dsbuild wrote the manifest.
+void read_planes(const json& owner, const SourcePlace& place, Diagnostics& diagnostics,
+                 DatasetRecord& dataset) {
+  if (!owner.contains("planes")) return;
+  Fields fields(owner, place, diagnostics);
+  read_members(fields, owner, place, diagnostics, "planes", dataset.planes,
+               [&](Fields& planes, const char* name, PlaneRecord& to) {
+                 const json* plane = planes.find(name);
+                 if (plane == nullptr || !plane->is_object()) return;
+                 Fields members(*plane, place, diagnostics);
+                 members.text("encoding", to.encoding);
+                 members.text("convention", to.convention);
+               });
+}
+
 /// Not there where an older dsbuild wrote the manifest; kinds that this one does not know are left
 /// out.
 void read_concerns(const json& owner, const SourcePlace& place, Diagnostics& diagnostics,
@@ -336,6 +351,7 @@ DatasetRecord dataset_from_json(const std::string& text, const std::string& file
                  [](Fields& f, const char* name, std::uint64_t& to) { f.count(name, to); });
     dataset.licences = format == 1 ? licences_of_format_1(fields, *object, place, diagnostics)
                                    : licences_from(fields, place, diagnostics);
+    read_planes(*object, place, diagnostics, dataset);
     read_mended_models(*object, place, diagnostics, dataset);
     read_concerns(*object, place, diagnostics, dataset.concerns);
   }

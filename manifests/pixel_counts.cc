@@ -22,7 +22,8 @@ struct Field {
 constexpr Field k_fields[] = {{"lit", &PixelCounts::lit},
                               {"white", &PixelCounts::white},
                               {"model", &PixelCounts::model},
-                              {"frame", &PixelCounts::frame}};
+                              {"frame", &PixelCounts::frame},
+                              {"amodal", &PixelCounts::amodal}};
 
 }  // namespace
 
@@ -48,6 +49,10 @@ PixelCounts count_mask(std::span<const std::uint8_t> samples, int width, int hei
     }
   }
   return {{}, {}, model, frame};
+}
+
+PixelCounts count_amodal_mask(std::span<const std::uint8_t> samples, int width, int height) {
+  return {{}, {}, {}, {}, count_mask(samples, width, height).model};
 }
 
 void add_counts(PixelCounts& to, const PixelCounts& from) {

@@ -15,8 +15,9 @@ struct PixelCounts {
   std::optional<std::uint64_t> lit;  ///< of the picture: some channel is above 4 of 255
   /// Of the picture: clipped in every channel (clipped_pixels).
   std::optional<std::uint64_t> white;
-  std::optional<std::uint64_t> model;  ///< of the mask: the model is seen
-  std::optional<std::uint64_t> frame;  ///< of those, in the first or last row or column
+  std::optional<std::uint64_t> model;     ///< of the mask: the model is seen
+  std::optional<std::uint64_t> frame;     ///< of those, in the first or last row or column
+  std::optional<std::uint64_t> amodal{};  ///< of the amodal mask: what would be seen of it alone
 
   bool operator==(const PixelCounts&) const = default;
 };
@@ -25,6 +26,8 @@ struct PixelCounts {
 PixelCounts count_picture(std::span<const std::uint8_t> samples, int channels);
 /// `model` and `frame` of a mask, one sample a pixel, 0 where the model is not seen.
 PixelCounts count_mask(std::span<const std::uint8_t> samples, int width, int height);
+/// `amodal` of an amodal mask, likewise.
+PixelCounts count_amodal_mask(std::span<const std::uint8_t> samples, int width, int height);
 /// Those of `to` that are absent, taken from the other.
 void add_counts(PixelCounts& to, const PixelCounts& from);
 

@@ -90,7 +90,7 @@ std::size_t tell_concerns(const std::vector<Concern>& concerns, const Recipe& re
   }
   const auto masks = std::find_if(concerns.begin(), concerns.end(),
                                   [](const Concern& one) { return one.name == "mask_empty"; });
-  if (masks != concerns.end() && masks->of == 0 && !recipe.outputs.mask)
+  if (masks != concerns.end() && masks->of == 0 && recipe.outputs.find_plane("mask") == nullptr)
     say(Stream::people,
         "not checked: whether images show their model whole; outputs.mask = true or outputs.depth "
         "= "

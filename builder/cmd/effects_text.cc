@@ -17,13 +17,16 @@ std::vector<Effect> image_effects(const Recipe& recipe, Inputs& inputs, const Im
       effect.simulated = false;
       effect.why = "no path is traced without outputs.image";
     }
-  const auto output = [&](const char* name, bool wanted) {
-    effects.push_back({"output", name, wanted,
-                       fmt::format("outputs.{} is {}", name, wanted ? "set" : "not set")});
+  const auto output = [&](std::string_view name, bool wanted) {
+    const bool by_key = name == "image" || name == "mask" || name == "depth";
+    const std::string key = by_key ? fmt::format("outputs.{}", name) : "outputs.planes";
+    effects.push_back({"output", std::string(name), wanted,
+                       by_key ? fmt::format("{} is {}", key, wanted ? "set" : "not set")
+                              : fmt::format("{} {} it", key, wanted ? "has" : "lacks")});
   };
   output("image", recipe.outputs.image);
-  output("mask", recipe.outputs.mask);
-  output("depth", recipe.outputs.depth);
+  for (const PlaneType& type : plane_types())
+    output(type.name, recipe.outputs.find_plane(type.name) != nullptr);
   return effects;
 }
 

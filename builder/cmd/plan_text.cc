@@ -16,7 +16,7 @@ Stamps stamps_of(const Arguments& arguments) {
 
 const char* step_of(const PlannedImage& image) {
   if (!image.stale()) return "";
-  if (image.trace_film || image.trace_geometry) return "trace";
+  if (image.trace_film || image.trace_planes) return "trace";
   const auto to_make = [](const PlannedFile& file) { return file.state == FileState::to_make; };
   return std::any_of(image.files.begin(), image.files.end(), to_make) ? "develop" : "place";
 }

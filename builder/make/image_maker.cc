@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/make/image_maker.h"
 
+#include "builder/make/plane_outputs.h"
 #include "builder/plan/limits.h"
 #include "tracer/base/error.h"
 #include "tracer/base/log.h"
@@ -20,8 +21,8 @@ struct ImageMaker::Work {
   const std::atomic<bool>& stop;
   ImageWork done;
   std::vector<MadeProduct> made;
-  std::optional<Geometry> geometry;
-  TraceRun geometry_run;
+  std::vector<Plane> planes;
+  TraceRun planes_run;
 };
 
 namespace {
@@ -159,26 +160,23 @@ Product ImageMaker::develop_image(Work& work, const OutputFile& output) {
   return keep(work, std::move(product), bytes, {watch.seconds(), ""});
 }
 
-Product ImageMaker::make_geometry_file(Work& work, const OutputFile& output) {
-  if (!work.geometry) {
+Product ImageMaker::make_plane_file(Work& work, const OutputFile& output) {
+  if (work.planes.empty()) {
     const Stopwatch watch;
-    work.geometry = renderer().trace_geometry(work.image.spec);
-    work.geometry_run = {watch.seconds(), renderer().device()};
+    work.planes = renderer().trace_planes(work.image.spec, planes_of(dataset_.recipe.outputs));
+    work.planes_run = {watch.seconds(), renderer().device()};
     work.done.traced = true;
   }
   Product product = product_of(output.key, output.kind);
-  // Of a depth too: it is traced with the mask, which the recipe may not ask for.
-  const Picture mask = mask_picture(*work.geometry);
-  product.pixel_counts = count_mask(mask.pixels, mask.width, mask.height);
-  if (output.kind != "mask")
-    return keep(work, std::move(product), encode_depth_exr(*work.geometry), work.geometry_run);
-  return keep(work, std::move(product), encode_png(mask), work.geometry_run);
+  product.pixel_counts = count_planes(work.planes);
+  return keep(work, std::move(product), encode_output(dataset_.recipe.outputs, output, work.planes),
+              work.planes_run);
 }
 
 Product ImageMaker::obtain(Work& work, const OutputFile& output) {
   if (!work.force)
     if (const auto known = find_whole(output.key)) return *known;
-  return output.kind == "image" ? develop_image(work, output) : make_geometry_file(work, output);
+  return output.plane == nullptr ? develop_image(work, output) : make_plane_file(work, output);
 }
 
 void ImageMaker::commit(const PlannedImage& image, const std::vector<MadeProduct>& made,

@@ -68,7 +68,7 @@ class ImageMaker {
   FilmSums kept_film(const Work& work) const;
   void keep_sums(Work& work, const FilmSums& sums, std::uint64_t had, const TraceRun& run);
   Product develop_image(Work& work, const OutputFile& output);
-  Product make_geometry_file(Work& work, const OutputFile& output);
+  Product make_plane_file(Work& work, const OutputFile& output);
   Product keep(Work& work, Product product, const std::vector<std::byte>& bytes,
                const TraceRun& run) const;
   void commit(const PlannedImage& image, const std::vector<MadeProduct>& made,

@@ -24,7 +24,9 @@ class Renderer {
   virtual Film trace(const ImageSpec& image, FilmSums* kept,
                      const std::function<void(const TraceProgress&)>& progress,
                      const std::atomic<bool>& stop) = 0;
-  virtual Geometry trace_geometry(const ImageSpec& image) = 0;
+  /// As Tracer::trace_planes.
+  virtual std::vector<Plane> trace_planes(const ImageSpec& image,
+                                          const std::vector<const PlaneType*>& types) = 0;
   /// Images that will be traced, in this order, one of each kind: what they need is got ready in
   /// the background while others are traced. They must outlive the renderer.
   // NOLINTNEXTLINE(performance-unnecessary-value-param): who overrides it keeps the list

@@ -25,9 +25,10 @@ class TracerRenderer : public Renderer {
     prepare_next();
     return tracer_.trace(image.camera, image.engine, progress, &stop, kept);
   }
-  Geometry trace_geometry(const ImageSpec& image) override {
+  std::vector<Plane> trace_planes(const ImageSpec& image,
+                                  const std::vector<const PlaneType*>& types) override {
     load(image);
-    return tracer_.trace_geometry(image.camera, image.engine.width, image.engine.height);
+    return tracer_.trace_planes(image.camera, image.engine.width, image.engine.height, types);
   }
   void announce(std::vector<const ImageSpec*> images) override {
     upcoming_.assign(images.begin(), images.end());

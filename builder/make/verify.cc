@@ -2,6 +2,7 @@
 #include "builder/make/verify.h"
 
 #include "builder/make/older_lines.h"
+#include "builder/make/plane_outputs.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
 #include "tracer/base/hash_stream.h"
@@ -198,14 +199,14 @@ class Rerender {
            const std::atomic<bool>& stop)
       : recipe_(recipe), inputs_(inputs), renderer_(renderer), image_(image), stop_(stop) {}
 
-  std::vector<std::byte> encode(const std::string& kind) {
-    if (kind == "image") {
+  std::vector<std::byte> encode(const OutputFile& output) {
+    if (output.plane == nullptr) {
       const Film film = renderer_.trace(image_.spec, nullptr, {}, stop_);
       return encode_png(
           develop(film, tone_map_of(recipe_, inputs_.environment(image_.spec.environment_folder))));
     }
-    if (!geometry_) geometry_ = renderer_.trace_geometry(image_.spec);
-    return kind == "mask" ? encode_png(mask_picture(*geometry_)) : encode_depth_exr(*geometry_);
+    if (planes_.empty()) planes_ = renderer_.trace_planes(image_.spec, planes_of(recipe_.outputs));
+    return encode_output(recipe_.outputs, output, planes_);
   }
 
  private:
@@ -214,12 +215,17 @@ class Rerender {
   Renderer& renderer_;
   const PlannedImage& image_;
   const std::atomic<bool>& stop_;
-  std::optional<Geometry> geometry_;
+  std::vector<Plane> planes_;
 };
 
-void compare_rerendered(VerifyResult& result, Rerender& rerender, const ImageRecord& record) {
+void compare_rerendered(VerifyResult& result, Rerender& rerender, const PlannedImage& image,
+                        const ImageRecord& record) {
   for (const FileRecord& wanted : record.files) {
-    const std::vector<std::byte> bytes = rerender.encode(wanted.kind);
+    const auto output =
+        std::find_if(image.keys.outputs.begin(), image.keys.outputs.end(),
+                     [&](const OutputFile& one) { return one.kind == wanted.kind; });
+    if (output == image.keys.outputs.end()) continue;  // the recipe wants it no more
+    const std::vector<std::byte> bytes = rerender.encode(*output);
     const Hash128 found = hash_bytes(bytes);
     if (found == wanted.hashes.xxh128) continue;
     const bool same_pixels = pixel_hash(bytes, wanted.path) == wanted.pixels;
@@ -366,7 +372,7 @@ void verify_by_tracing(VerifyResult& result, Dataset& dataset, const Plan& plan,
     if (record == records.end() || image->error) continue;  // reported by verify_against_plan
     told(image->spec.id);
     Rerender rerender(dataset.recipe, inputs, renderer, *image, stop);
-    compare_rerendered(result, rerender, record->second);
+    compare_rerendered(result, rerender, *image, record->second);
     ++result.rerendered;
   }
 }

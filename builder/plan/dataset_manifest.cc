@@ -4,6 +4,7 @@
 #include "builder/plan/dataset_concerns.h"
 #include "builder/plan/licence_files.h"
 #include "tracer/base/files.h"
+#include "tracer/scene/type_tables.h"
 
 #include <algorithm>
 #include <set>
@@ -89,6 +90,10 @@ DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
   record.counts = {{"images", images.size()}, {"models", models.size()}};
   for (const auto& [split, count] : splits)
     record.counts.emplace_back(split, count);
+  for (const PlaneOutput& plane : recipe.outputs.planes)
+    record.planes.emplace_back(plane.type->name,
+                               PlaneRecord{std::string(name_of(plane.encoding)),
+                                           header_comment("planes", plane.type->name)});
   for (const auto& [model, what] : plan.mended)
     if (models.contains(model)) record.mended_models.emplace_back(model, what.damage);
   std::vector<std::pair<std::string, std::string>> texts;

@@ -3,6 +3,7 @@
 
 #include "tracer/base/canonical.h"
 #include "tracer/base/error.h"
+#include "tracer/kernels/layout.h"
 #include "tracer/scene/sdl.h"
 
 #include <nlohmann/json.hpp>
@@ -14,14 +15,28 @@ namespace {
 
 using nlohmann::json;
 
-/// What mask and depth see of an environment.
-std::string canonical_shape(const Scene& environment) {
+std::string canonical_shape(const Scene& environment, unsigned reads) {
+  MeshExtras extras;
+  extras.uvs = (reads & kernels::k_plane_uvs) != 0;
+  extras.normals = (reads & kernels::k_plane_normals) != 0;
   CanonicalText text;
   for (const Object& object : environment.objects) {
-    text.add("object.geometry", geometry_hash(object.mesh, {}).hex());
+    text.add("object.geometry", geometry_hash(object.mesh, extras).hex());
     text.add("object.camera_invisible", object.camera_invisible);
+    if ((reads & kernels::k_plane_objects) != 0) text.add("object.id", object.id);
+    if ((reads & kernels::k_plane_material_ids) != 0)
+      text.add("object.material.id",
+               environment.materials[static_cast<std::size_t>(object.material)].id);
   }
   return text.text();
+}
+
+std::map<unsigned, std::string> canonical_shapes(const Scene& environment) {
+  std::map<unsigned, std::string> shapes;
+  for (const PlaneType& plane : plane_types())
+    if (const unsigned reads = plane_reads(plane); !shapes.contains(reads))
+      shapes.emplace(reads, canonical_shape(environment, reads));
+  return shapes;
 }
 
 double longest_side(const Scene& environment) {
@@ -65,8 +80,13 @@ ToneMap tone_map_from(const json& value) {
 
 }  // namespace
 
+unsigned plane_reads(const PlaneType& plane) {
+  return plane.traits & (kernels::k_plane_normals | kernels::k_plane_uvs |
+                         kernels::k_plane_objects | kernels::k_plane_material_ids);
+}
+
 EnvironmentFacts facts_of(const Scene& environment) {
-  return {canonical_environment(environment), canonical_shape(environment), environment.tone_map,
+  return {canonical_environment(environment), canonical_shapes(environment), environment.tone_map,
           longest_side(environment),
           std::any_of(environment.materials.begin(), environment.materials.end(),
                       [](const Material& material) { return !material.unphysical.empty(); })};
@@ -79,7 +99,7 @@ std::string to_text(const EnvironmentFacts& facts, const std::vector<SourceFile>
   try {
     return json{{"files", std::move(sources)},
                 {"text", facts.text},
-                {"shape", facts.shape},
+                {"shapes", facts.shapes},
                 {"tone_map", to_json(facts.tone_map)},
                 {"longest_side_m", facts.longest_side_m},
                 {"unphysical", facts.unphysical}}
@@ -94,10 +114,11 @@ std::optional<EnvironmentFacts> facts_from_text(const std::string& text) {
     const json object = json::parse(text);
     const json& files = object.at("files");
     if (!std::all_of(files.begin(), files.end(), has_stamp)) return std::nullopt;
-    return EnvironmentFacts{
-        object.at("text").get<std::string>(), object.at("shape").get<std::string>(),
-        tone_map_from(object.at("tone_map")), object.at("longest_side_m").get<double>(),
-        object.at("unphysical").get<bool>()};
+    return EnvironmentFacts{object.at("text").get<std::string>(),
+                            object.at("shapes").get<std::map<unsigned, std::string>>(),
+                            tone_map_from(object.at("tone_map")),
+                            object.at("longest_side_m").get<double>(),
+                            object.at("unphysical").get<bool>()};
   } catch (const json::exception&) {
     return std::nullopt;
   } catch (const Error&) {  // a file that cannot be looked at: reading it says why

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "builder/db/database.h"
+#include "tracer/device/plane_types.h"
 #include "tracer/scene/scene.h"
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,12 +15,17 @@ namespace ds {
 
 /// What a plan needs of an environment.
 struct EnvironmentFacts {
-  std::string text;   ///< canonical_environment
-  std::string shape;  ///< what mask and depth see of it, canonical
+  std::string text;  ///< canonical_environment
+  /// What planes see of it, canonical, by what they read (plane_reads).
+  std::map<unsigned, std::string> shapes;
   ToneMap tone_map;
   double longest_side_m = 0;  ///< of the box around its objects; 0 where it has none
   bool unphysical = false;    ///< a material of it gives back more light than it gets, or the like
 };
+
+/// What of an object a plane reads beside its places: its traits of kernels/plane_traits.h that say
+/// so.
+unsigned plane_reads(const PlaneType& plane);
 
 EnvironmentFacts facts_of(const Scene& environment);
 

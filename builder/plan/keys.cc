@@ -7,12 +7,14 @@
 #include "tracer/device/plane_types.h"
 #include "tracer/device/program_text.h"
 #include "tracer/device/program_tokens.h"
+#include "tracer/kernels/layout.h"
 #include "tracer/render/engine_text.h"
 #include "tracer/scene/scene_reads.h"
 #include "tracer/scene/sdl.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <deque>
 #include <map>
@@ -25,33 +27,31 @@
 namespace ds {
 namespace {
 
-/// How each kind of file is encoded. The names stand in the keys: a change of an encoder's settings
-/// changes its name here and makes the files anew from what is traced.
-struct Encoding {
-  const char* kind;
-  const char* ending;
-  const char* format;
+/// A file that an image has.
+struct OutputKind {
+  std::string_view kind;             ///< "image" or a plane's name
+  std::string ending;                ///< ".png", ".mask.png"
+  std::string_view format;           ///< in the keys: how it is encoded
+  const PlaneType* plane = nullptr;  ///< none: the picture
 };
-constexpr Encoding k_encodings[] = {
-    {"image", ".png", "png 8 bit, zlib 6, version 1"},
-    {"mask", ".mask.png", "png 8 bit, zlib 6, version 1"},
-    {"depth", ".depth.exr", "exr float, zip, version 1"},
-};
-/// Version of how mask and depth are traced.
+constexpr std::string_view k_picture_ending = ".png";
+/// A change of the encoder's settings changes it.
+constexpr std::string_view k_picture_format = "png 8 bit, zlib 6, version 1";
+/// Version of how planes are traced.
 constexpr int k_geometry_version = 1;
 
-const Encoding& encoding_of(std::string_view kind) {
-  for (const Encoding& encoding : k_encodings)
-    if (encoding.kind == kind) return encoding;
-  assertion_failed("kind is in k_encodings", __FILE__, __LINE__);
+std::string plane_ending(const PlaneType& type, PlaneEncoding encoding) {
+  return fmt::format(".{}{}", type.name, ending_of(encoding));
 }
 
 /// In the order of the files of an image.
-std::vector<const char*> kinds_of(const OutputSettings& outputs) {
-  std::vector<const char*> kinds;
-  if (outputs.image) kinds.push_back("image");
-  if (outputs.mask) kinds.push_back("mask");
-  if (outputs.depth) kinds.push_back("depth");
+std::vector<OutputKind> kinds_of(const OutputSettings& outputs) {
+  std::vector<OutputKind> kinds;
+  if (outputs.image)
+    kinds.push_back({"image", std::string(k_picture_ending), k_picture_format, nullptr});
+  for (const PlaneOutput& plane : outputs.planes)
+    kinds.push_back({plane.type->name, plane_ending(*plane.type, plane.encoding),
+                     format_of(plane.encoding), plane.type});
   return kinds;
 }
 
@@ -84,8 +84,8 @@ Mesh stand_in() {
 /// What is done to the film and which files there are, for `explain`.
 std::string canonical_files(const OutputSettings& outputs, const ToneMap& tone_map) {
   CanonicalText text;
-  for (const char* kind : kinds_of(outputs))
-    text.add(kind, encoding_of(kind).format);
+  for (const OutputKind& kind : kinds_of(outputs))
+    text.add(kind.kind, kind.format);
   return text.text() + canonical_tone_map(tone_map);
 }
 
@@ -120,9 +120,8 @@ std::string canonical_model(const MeshHashes& mesh, MeshExtras reads,
   return text.text();
 }
 
-std::string output_path(const std::string& image_id, const std::string& kind) {
+std::string output_path(const std::string& image_id, std::string_view ending) {
   constexpr std::string_view k_folder = "images/";
-  const std::string_view ending = encoding_of(kind).ending;
   std::string path;
   path.reserve(k_folder.size() + image_id.size() + ending.size());
   ((path += k_folder) += image_id) += ending;
@@ -131,19 +130,34 @@ std::string output_path(const std::string& image_id, const std::string& kind) {
 
 std::vector<std::string> output_paths(const OutputSettings& outputs, const std::string& image_id) {
   std::vector<std::string> paths;
-  for (const char* kind : kinds_of(outputs))
-    paths.push_back(output_path(image_id, kind));
+  for (const OutputKind& kind : kinds_of(outputs))
+    paths.push_back(output_path(image_id, kind.ending));
   return paths;
+}
+
+const std::vector<std::string>& all_output_endings() {
+  static const std::vector<std::string> endings = [] {
+    std::vector<std::string> list{std::string(k_picture_ending)};
+    for (const PlaneType& type : plane_types())
+      for (const PlaneEncoding encoding : encodings_of(type))
+        if (std::string ending = plane_ending(type, encoding); ending != list.back())
+          list.push_back(std::move(ending));
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    return list;
+  }();
+  return endings;
 }
 
 namespace {
 
 /// What the key of an output is the hash of, less what it is made from.
-TextForm output_form(const char* kind, const std::string& development) {
+TextForm output_form(std::string_view kind, std::string_view format,
+                     const std::string& development) {
   CanonicalText text;
   text.add("kind", kind);
   text.add("from", "");
-  text.add("format", encoding_of(kind).format);
+  text.add("format", format);
   return {text.text() + development, {"from"}};
 }
 
@@ -191,7 +205,17 @@ struct View {
   Camera camera;
   int width = 0, height = 0;
   Hash128 part;
-  TextForm geometry;  ///< the geometry key's text, "model" to be filled
+  std::vector<TextForm> planes;  ///< of each wanted: its text, k_plane_parts to be filled
+};
+
+constexpr std::array<const char*, 2> k_plane_parts = {"model", "material_id"};
+
+/// What all images share of a plane.
+struct WantedPlane {
+  const PlaneType* type = nullptr;
+  Hash128 program;  ///< of its tokens, with this plane alone
+  MeshExtras reads;
+  TextForm output;
 };
 
 /// What images in one environment share.
@@ -199,7 +223,7 @@ struct Environment {
   Shared<std::filesystem::path> folder;  ///< keeps the address that is this entry's name
   std::string text;                      ///< canonical
   Hash128 part, files_part;
-  std::string shape;
+  std::map<unsigned, std::string> shapes;
   TextForm picture;  ///< the picture's output
   std::unordered_map<const void*, View> views;
 };
@@ -208,6 +232,7 @@ struct Environment {
 struct Kind {
   Shared<std::filesystem::path> material, environment;  ///< keep the addresses that are its name
   Hash128 material_part;
+  std::uint32_t material_id = 0;
   MeshExtras reads;  ///< of a model, by the material
   Hash128 program;   ///< of its tokens, as they stand in a canonical text
   bool made = false;
@@ -233,19 +258,22 @@ class KeyMaker::State {
   Kind& kind_of(const ImageSpec& image, const Environment& environment);
   const std::string& program(const ImageSpec& image);
   Hash128 program_hash(const ImageSpec& image, const Environment& environment, Hash128 material);
-  void add_outputs(ImageKeys& keys, Environment& environment, const std::string& id);
+  TextForm plane_form(const WantedPlane& plane, const Environment& environment,
+                      const ImageSpec& image) const;
+  void add_outputs(ImageKeys& keys, Environment& environment, View& view, const Kind& kind,
+                   const ImageSpec& image);
 
   const Recipe& recipe_;
   Inputs& inputs_;
   TextSet& texts_;
-  std::vector<const char*> output_kinds_;  ///< of output files
-  Hash128 geometry_program_;
+  std::vector<OutputKind> output_kinds_;
+  std::vector<WantedPlane> planes_;      ///< as they stand in output_kinds_
   Shared<std::filesystem::path> model_;  ///< the last image's: a model's images follow each other
   std::array<std::optional<Hash128>, 8> model_parts_;  ///< by what of the model is read
   std::unordered_map<const void*, Environment> environments_;
   std::map<std::tuple<const void*, const void*, bool>, Kind> kinds_;
   std::deque<std::pair<Features, std::string>> programs_;
-  TextForm five_, film_sums_, mask_, depth_, files_;
+  TextForm five_, film_sums_, files_;
 };
 
 KeyMaker::State::State(const Recipe& recipe, Inputs& inputs, TextSet& texts)
@@ -253,18 +281,24 @@ KeyMaker::State::State(const Recipe& recipe, Inputs& inputs, TextSet& texts)
       inputs_(inputs),
       texts_(texts),
       output_kinds_(kinds_of(recipe.outputs)),
-      geometry_program_(hash_text(program_tokens(
-          planes_program_text(std::array{&plane_type("mask"), &plane_type("depth")})))),
-      five_(form_of_parts({})),
-      mask_(output_form("mask", "")),
-      depth_(output_form("depth", "")) {
+      five_(form_of_parts({})) {
   CanonicalText head;
   head.add("kind", "film_sums");
   film_sums_ = form_of_parts(head);
   CanonicalText files;
-  for (const char* kind : output_kinds_)
-    files.add(kind, "");
-  files_ = TextForm(files.text(), output_kinds_);
+  std::vector<const char*> names;
+  for (const OutputKind& kind : output_kinds_) {
+    files.add(kind.kind, "");
+    names.push_back(kind.kind.data());  // names are literals
+    if (kind.plane == nullptr) continue;
+    const std::vector<const PlaneType*> alone{kind.plane};
+    MeshExtras reads;
+    reads.uvs = (kind.plane->traits & kernels::k_plane_uvs) != 0;
+    reads.normals = (kind.plane->traits & kernels::k_plane_normals) != 0;
+    planes_.push_back({kind.plane, hash_text(program_tokens(planes_program_text(alone))), reads,
+                       output_form(kind.kind, kind.format, "")});
+  }
+  files_ = TextForm(files.text(), names);
 }
 
 Hash128 KeyMaker::State::model_part(const ImageSpec& image, MeshExtras reads) {
@@ -289,8 +323,8 @@ Environment& KeyMaker::State::environment_of(const ImageSpec& image) {
   made.folder = image.environment_folder;
   made.part = texts_.add(facts.text);
   made.files_part = texts_.add(canonical_files(recipe_.outputs, tone_map));
-  made.shape = facts.shape;
-  made.picture = output_form("image", canonical_tone_map(tone_map));
+  made.shapes = facts.shapes;
+  made.picture = output_form("image", k_picture_format, canonical_tone_map(tone_map));
   return environments_.emplace(made.folder.identity(), std::move(made)).first->second;
 }
 
@@ -304,20 +338,30 @@ View& KeyMaker::State::view_of(Environment& environment, const ImageSpec& image)
   view.width = engine.width;
   view.height = engine.height;
   view.part = hash_text(texts_.fold(canonical_camera(image.camera)));
+  view.planes.clear();
+  for (const WantedPlane& plane : planes_)
+    view.planes.push_back(plane_form(plane, environment, image));
+  return view;
+}
+
+/// Of a plane of the model alone the environment is no part.
+TextForm KeyMaker::State::plane_form(const WantedPlane& plane, const Environment& environment,
+                                     const ImageSpec& image) const {
+  const bool alone = (plane.type->traits & kernels::k_plane_alone) != 0;
   CanonicalText text;
   text.add("version", k_geometry_version);
   text.add("host_version", k_host_render_version);
-  text.add("program", geometry_program_.hex());
-  text.add("model", "");
-  text.add("environment", environment.shape);
+  text.add("program", plane.program.hex());
+  for (const char* part : k_plane_parts)
+    text.add(part, "");
+  text.add("environment", alone ? "" : environment.shapes.at(plane_reads(*plane.type)));
   add_vector(text, "camera.position", image.camera.position);
   add_vector(text, "camera.target", image.camera.target);
   add_vector(text, "camera.up", image.camera.up);
   text.add("camera.fov_deg", image.camera.fov_deg);
-  text.add("width", engine.width);
-  text.add("height", engine.height);
-  view.geometry = TextForm(text.text(), {"model"});
-  return view;
+  text.add("width", image.engine.width);
+  text.add("height", image.engine.height);
+  return {text.text(), k_plane_parts};
 }
 
 /// Of few different ones, however many materials and environments there are.
@@ -360,6 +404,7 @@ Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& enviro
   kind.material_part = texts_.add(canonical_material(material));
   kind.reads = reads_of(material, static_cast<int>(material.materials.size()) - 1);
   kind.reads.normals = true;
+  kind.material_id = material.materials.back().id;
   kind.program = program_hash(image, environment, kind.material_part);
   kind.engine =
       TextForm(canonical_engine(settings, TextSet::k_reference + kind.program.hex()), {"seed"});
@@ -369,22 +414,33 @@ Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& enviro
   return kind;
 }
 
-void KeyMaker::State::add_outputs(ImageKeys& keys, Environment& environment,
-                                  const std::string& id) {
-  const HexText render(keys.render), geometry(keys.geometry);
+void KeyMaker::State::add_outputs(ImageKeys& keys, Environment& environment, View& view,
+                                  const Kind& kind, const ImageSpec& image) {
   keys.outputs.reserve(output_kinds_.size());
-  std::array<HexText, std::size(k_encodings)> texts;
-  std::array<std::string_view, std::size(k_encodings)> values;
-  for (std::size_t i = 0; i < output_kinds_.size(); ++i) {
-    const std::string_view kind = output_kinds_[i];
-    const bool of_film = kind == "image";
-    TextForm& form = of_film ? environment.picture : kind == "mask" ? mask_ : depth_;
-    const Hash128 key = form.hash({(of_film ? render : geometry).text()});
-    texts[i] = HexText(key);
-    values[i] = texts[i].text();
-    keys.outputs.push_back({output_kinds_[i], output_path(id, output_kinds_[i]), key});
+  const fmt::format_int material_id(kind.material_id);
+  std::vector<HexText> texts;
+  texts.reserve(output_kinds_.size());
+  std::vector<std::string_view> values;
+  std::size_t next = 0;
+  for (const OutputKind& output : output_kinds_) {
+    Hash128 key;
+    if (output.plane == nullptr) {
+      key = environment.picture.hash({HexText(keys.render).text()});
+    } else {
+      WantedPlane& plane = planes_[next];
+      const bool has_id = (plane.type->traits & kernels::k_plane_material_ids) != 0;
+      const Hash128 traced =
+          view.planes[next++].hash({HexText(model_part(image, plane.reads)).text(),
+                                    has_id ? view_of_digits(material_id) : std::string_view()});
+      key = plane.output.hash({HexText(traced).text()});
+    }
+    texts.emplace_back(key);
+    keys.outputs.push_back(
+        {std::string(output.kind), output_path(image.id, output.ending), key, output.plane});
   }
-  keys.files = files_.hash(std::span(values).first(output_kinds_.size()));
+  for (const HexText& text : texts)
+    values.push_back(text.text());
+  keys.files = files_.hash(values);
 }
 
 ImageKeys KeyMaker::State::keys(const ImageSpec& image) {
@@ -402,8 +458,7 @@ ImageKeys KeyMaker::State::keys(const ImageSpec& image) {
   keys.render =
       five_.hash({HexText(parts[0]).text(), HexText(parts[1]).text(), HexText(parts[2]).text(),
                   HexText(parts[3]).text(), HexText(parts[4]).text()});
-  keys.geometry = view.geometry.hash({HexText(model_part(image, {})).text()});
-  add_outputs(keys, environment, image.id);
+  add_outputs(keys, environment, view, kind, image);
   return keys;
 }
 

@@ -14,20 +14,21 @@ namespace ds {
 
 /// One file of an image, and the key of what it is made from.
 struct OutputFile {
-  std::string kind;  ///< "image", "mask", "depth"
+  std::string kind;  ///< "image", or the plane's name
   std::string path;  ///< relative to the dataset's folder: "images/human.ply/0.mask.png"
   Hash128 key;
+  const PlaneType* plane = nullptr;  ///< none: the picture
 };
 
 /// The keys of one image: one for each stage, so that a change costs only the stages after it.
 ///   render    what is traced: hash of the five parts
 ///   kept      of a film under way: render less spp, error and max_spp
-///   geometry  what mask and depth are traced from: model, normalisation, the environment's meshes,
-///             all less uvs, colours and normals, camera less its lens, size
-///   outputs   each file: render or geometry key, tone map, encoding
+///   outputs   each file: its encoding, and of the picture render key and tone map; of a plane what it
+///             is traced from: its program, model, normalisation and the environment's meshes with
+///             what of normals, uvs and ids it reads, camera less its lens, size
 struct ImageKeys {
   PartHashes parts;  ///< of folded texts; the sixth, "files", is not in `render`
-  Hash128 render, geometry;
+  Hash128 render;
   /// Of the film's sums: as render, less what only says when to stop. Zero where no film is kept or
   /// nothing of the image is made.
   Hash128 kept;
@@ -68,8 +69,10 @@ const ToneMap& tone_map_of(const Recipe& recipe, const EnvironmentFacts& environ
 std::string canonical_model(const MeshHashes& mesh, MeshExtras reads,
                             const NormaliseOptions& options);
 
-/// Path of an output of an image: "images/human.ply/0.png".
-std::string output_path(const std::string& image_id, const std::string& kind);
+/// Path of an output of an image, by its ending: "images/human.ply/0.mask.png".
+std::string output_path(const std::string& image_id, std::string_view ending);
+/// Of all outputs that a recipe can ask for: ".png", ".depth.exr".
+const std::vector<std::string>& all_output_endings();
 
 /// Paths of all files that an image of the recipe consists of; known of images too whose files
 /// cannot be read.

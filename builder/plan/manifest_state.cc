@@ -76,8 +76,6 @@ Hash128 bytes_in_place(const PlacedFiles& placed, const std::string& path) {
 void add_older(HashStream& listing, const ListedImages& images, const PlacedFiles& placed) {
   if (images.lacking.empty()) return;
   add_word(listing, "older");
-  OutputSettings every;  // a line may have files that the recipe no longer asks for
-  every.image = every.mask = every.depth = true;
   auto pending = images.pending.begin();
   for (const PlannedImage* image : images.lacking) {
     const bool is_pending = pending != images.pending.end() && *pending == image;
@@ -85,8 +83,9 @@ void add_older(HashStream& listing, const ListedImages& images, const PlacedFile
     add_word(listing, image->spec.id);
     add_word(listing, image->refused ? "refused" : is_pending ? "pending" : "");
     if (image->refused) continue;
-    for (const std::string& path : output_paths(every, image->spec.id))
-      listing.add(bytes_in_place(placed, path));
+    // A line may have files that the recipe no longer asks for.
+    for (const std::string& ending : all_output_endings())
+      listing.add(bytes_in_place(placed, output_path(image->spec.id, ending)));
   }
 }
 

@@ -116,8 +116,8 @@ void Planner::plan_files(PlannedImage& image, bool changed) {
       file.state = !force_ && in_store(output.key) ? FileState::in_store : FileState::to_make;
     }
     if (file.state == FileState::to_make) {
-      if (output.kind != "image")
-        image.trace_geometry = true;
+      if (output.plane != nullptr)
+        image.trace_planes = true;
       else if (force_ || !in_store(image.keys.render))
         image.trace_film = true;
     }

@@ -41,7 +41,7 @@ struct PlannedImage {
   ImageKeys keys;
   bool elsewhere = false;          ///< of another shard: nothing below is filled but `error`
   std::vector<PlannedFile> files;  ///< as keys.outputs; none where it is up to date
-  bool trace_film = false, trace_geometry = false;
+  bool trace_film = false, trace_planes = false;
   std::uint64_t kept_samples = 0;    ///< of a kept film that its film goes on from
   bool record = false;               ///< the database is behind though no file is
   std::vector<std::string> reasons;  ///< why it is stale, each a sentence; empty where it is not

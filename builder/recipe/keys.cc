@@ -216,6 +216,10 @@ constexpr std::array k_keys = {
             "Write VIEW.mask.png: white where the model is seen, else black"},
     KeySpec{"outputs.depth", files, choice, "", "false", k_any, R"("exr" | false)", "",
             "Write VIEW.depth.exr: planar z in metres"},
+    KeySpec{
+        "outputs.planes", files, text_list, "", "[]", k_any, "", "",
+        "Further planes, each a file VIEW.NAME.png or .exr: NAME, or NAME:ENCODING where not the "
+        "usual one; see Planes"},
     KeySpec{"outputs.tone_map", files, choice, "", "\"environment\"", k_any,
             R"("environment" | "linear" | "reinhard02" | "autolinear")", "",
             "How radiance becomes 8 bits: as each environment says, or this for all"},

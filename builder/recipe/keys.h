@@ -15,6 +15,7 @@ enum class KeyType {
   name,  ///< a file name: letters, digits and . _ - only, no dot in front
   path,  ///< of a file or folder
   path_list,
+  text_list,
   choice,  ///< one of KeySpec::choices
   boolean,
   integer,
@@ -76,7 +77,7 @@ std::vector<std::string_view> recipe_sections();
 /// The known name that looks most like the unknown one, or "" where none does.
 std::string_view nearest_key(std::string_view unknown);
 
-/// The reference of recipes/README.md: a Markdown table a section.
+/// The reference of recipes/README.md: a Markdown table a section, and one of planes.
 std::string recipe_reference();
 
 }  // namespace ds

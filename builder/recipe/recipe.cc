@@ -4,6 +4,7 @@
 #include "builder/recipe/assets.h"
 #include "builder/recipe/camera_sets.h"
 #include "builder/recipe/canonical_recipe.h"
+#include "builder/recipe/planes.h"
 #include "builder/recipe/settings.h"
 #include "manifests/concerns.h"
 #include "tracer/base/files.h"
@@ -66,9 +67,8 @@ EngineSettings read_engine(const Settings& settings) {
 OutputSettings read_outputs(const Settings& settings) {
   OutputSettings outputs;
   outputs.image = settings.find("outputs.image")->text() != nullptr;
-  outputs.mask = settings.boolean("outputs.mask");
-  outputs.depth = settings.find("outputs.depth")->text() != nullptr;
-  if (!outputs.image && !outputs.mask && !outputs.depth)
+  outputs.planes = read_planes(settings);
+  if (!outputs.image && outputs.planes.empty() && !settings.misfits("outputs.planes"))
     settings.complain("outputs.image", "is off, and so are mask and depth; wanted one at least");
   if (settings.text("outputs.tone_map") == "environment") return outputs;
   ToneMap& map = outputs.tone_map.emplace();

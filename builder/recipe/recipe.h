@@ -4,6 +4,7 @@
 #include "builder/recipe/camera_fit.h"
 #include "builder/recipe/shared.h"
 #include "manifests/classification.h"
+#include "tracer/render/plane_file.h"
 #include "tracer/render/render.h"
 #include "tracer/scene/mesh.h"
 #include "tracer/scene/scene.h"
@@ -13,6 +14,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,12 +24,23 @@ enum class Assign { random, cycle, all };
 /// Whether a random choice is made once for a model, or for each of its views.
 enum class ChoosePer { model, view };
 
-/// Which files an image consists of. Depth is planar z.
+/// A plane that is wanted of each image, and how.
+struct PlaneOutput {
+  const PlaneType* type = nullptr;
+  PlaneEncoding encoding = PlaneEncoding::exr;
+  bool operator==(const PlaneOutput&) const = default;
+};
+
+/// Which files an image consists of.
 struct OutputSettings {
   bool image = true;  ///< the path-traced picture
-  bool mask = true;
-  bool depth = false;
+  /// Beside it, no two of one type, in the order of plane_types().
+  std::vector<PlaneOutput> planes;
   std::optional<ToneMap> tone_map;  ///< overrides every environment's own
+
+  const PlaneOutput* find_plane(std::string_view name) const;
+  /// Adds one, or changes the encoding of the one there is.
+  void set_plane(PlaneOutput plane);
 };
 
 /// How the models found and the models that the class files list agree.

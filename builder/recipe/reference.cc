@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/recipe/keys.h"
+#include "builder/recipe/planes.h"
 
 #include <fmt/format.h>
 
@@ -19,6 +20,8 @@ std::string_view type_text(KeyType type) {
       return "a path (a string)";
     case KeyType::path_list:
       return "a list of paths (strings)";
+    case KeyType::text_list:
+      return "a list of strings";
     case KeyType::choice:
       return "";
     case KeyType::boolean:
@@ -114,7 +117,7 @@ std::string recipe_reference() {
                         type_cell(key), key.unit, default_cell(key), help_cell(key),
                         moves_text(key.moves));
   }
-  return text;
+  return text + "\n### Planes\n\n" + plane_reference();
 }
 
 }  // namespace ds

@@ -57,6 +57,7 @@ const RecipeValue* unfit_part(const KeySpec& key, const RecipeValue& value) {
     case KeyType::number:
       return all_or_nothing(value.is_number() && key.range.contains(value.number()));
     case KeyType::path_list:
+    case KeyType::text_list:
       return first_unfit(
           value, [](const RecipeValue& v) { return v.text() != nullptr && !v.text()->empty(); });
     case KeyType::integer_list:

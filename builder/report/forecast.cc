@@ -274,7 +274,7 @@ std::vector<PairWork> work_of(const Plan& plan, const Recipe& recipe) {
     } else if (to_make > 0) {
       ++pair.remake;
     }
-    if (image.trace_film || image.trace_geometry)
+    if (image.trace_film || image.trace_planes)
       scenes[name].insert(
           {image.spec.model_file, image.spec.material_file, image.spec.environment_folder});
   }

@@ -30,8 +30,9 @@ class SharedRenderer : public Renderer {
              const std::atomic<bool>& stop) override {
     return renderer_.trace(image, kept, progress, stop);
   }
-  Geometry trace_geometry(const ImageSpec& image) override {
-    return renderer_.trace_geometry(image);
+  std::vector<Plane> trace_planes(const ImageSpec& image,
+                                  const std::vector<const PlaneType*>& types) override {
+    return renderer_.trace_planes(image, types);
   }
   std::string device() const override { return renderer_.device(); }
 

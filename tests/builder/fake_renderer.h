@@ -5,6 +5,8 @@
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
 #include "tracer/base/hash.h"
+#include "tracer/device/plane_types.h"
+#include "tracer/kernels/layout.h"
 
 #include <atomic>
 #include <cstdint>
@@ -20,9 +22,9 @@ class FakeRenderer : public Renderer {
  public:
   /// What all fakes of one build share.
   struct Calls {
-    std::vector<std::string> traced, geometry, announced;  ///< ids in order
-    std::string fails_on;                                  ///< id of an image that cannot be traced
-    std::map<std::string, std::uint64_t> rejected;         ///< samples that are NaN, by id
+    std::vector<std::string> traced, planes, announced;  ///< ids in order
+    std::string fails_on;                                ///< id of an image that cannot be traced
+    std::map<std::string, std::uint64_t> rejected;       ///< samples that are NaN, by id
     std::atomic<bool>* stop_after_one = nullptr;
   };
   explicit FakeRenderer(Calls& calls) : calls_(calls) {}
@@ -47,16 +49,21 @@ class FakeRenderer : public Renderer {
     if (calls_.stop_after_one != nullptr) *calls_.stop_after_one = true;
     return film;
   }
-  Geometry trace_geometry(const ImageSpec& image) override {
-    calls_.geometry.push_back(image.id);
-    Geometry geometry{image.engine.width, image.engine.height, {}, {}};
+  std::vector<Plane> trace_planes(const ImageSpec& image,
+                                  const std::vector<const PlaneType*>& types) override {
+    calls_.planes.push_back(image.id);
     const std::uint64_t seed = hash64_text(read_text_file(image.model_file) + *image.view);
-    for (int i = 0; i < geometry.width * geometry.height; ++i) {
-      const float value = unit(seed, static_cast<std::uint64_t>(i));
-      geometry.mask.push_back(value > 0.5f ? 255 : 0);
-      geometry.depth.push_back(value);
+    std::vector<Plane> planes;
+    for (const PlaneType* type : types) {
+      Plane& plane = planes.emplace_back(Plane{type, image.engine.width, image.engine.height, {}});
+      const bool whole =
+          (type->traits & (kernels::k_plane_words | kernels::k_plane_png_share)) != 0;
+      for (int i = 0; i < plane.width * plane.height * type->width; ++i) {
+        const float value = unit(seed, static_cast<std::uint64_t>(i));
+        plane.values.push_back(!whole ? value : value > 0.5f ? 1.0f : 0.0f);
+      }
     }
-    return geometry;
+    return planes;
   }
   void announce(std::vector<const ImageSpec*> images) override {
     for (const ImageSpec* image : images)

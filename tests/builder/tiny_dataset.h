@@ -37,7 +37,7 @@ class TinyDataset : public testing::Test {
   BuildResult build(const BuildOptions& options = {}) { return build(real_disk, options); }
   BuildResult build(Disk& disk, const BuildOptions& options = {}) {
     calls.traced.clear();
-    calls.geometry.clear();
+    calls.planes.clear();
     Dataset dataset = open_dataset(request, Access::build, disk);
     Inputs inputs(*dataset.database);
     const Plan plan = make_plan(dataset, inputs, options.force, shard);

@@ -145,11 +145,4 @@ std::uint64_t clipped_pixels(const Film& film, const ToneMap& tone_map) {
   return clipped;
 }
 
-Picture mask_picture(const Geometry& geometry) {
-  Picture picture{geometry.width, geometry.height, 1, geometry.mask};
-  for (std::uint8_t& value : picture.pixels)
-    value = value != 0 ? 255 : 0;
-  return picture;
-}
-
 }  // namespace ds

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace ds {
@@ -16,6 +17,18 @@ namespace ds {
 struct Picture {
   int width = 0, height = 0, channels = 3;
   std::vector<std::uint8_t> pixels;
+};
+
+/// 16-bit picture, likewise.
+struct DeepPicture {
+  int width = 0, height = 0, channels = 1;
+  std::vector<std::uint16_t> pixels;
+};
+/// Picture of floats with named channels, likewise interleaved.
+struct FloatPicture {
+  int width = 0, height = 0;
+  std::vector<std::string> channels;
+  std::vector<float> values;
 };
 
 /// The factor that the tone map found for this film, for the manifest. With LuxCore's luminance
@@ -53,14 +66,12 @@ class ToneCurve {
   std::vector<double> table_;  ///< v^(1 / gamma) at the steps of `power`
 };
 
-/// 0 and 255 only.
-Picture mask_picture(const Geometry& geometry);
-
-/// Encoded files with fixed settings; no timestamp, host or version stands in them. PNG: 8 bit,
-/// zlib level 6, Paeth filter. EXR: float, ZIP, one channel "Z". The same library versions give the
-/// same bytes.
+/// Encoded files with fixed settings; no timestamp, host or version stands in them. PNG: 8 or 16
+/// bit, zlib level 6, Paeth filter. EXR: float or half, ZIP. The same library versions give the same
+/// bytes.
 std::vector<std::byte> encode_png(const Picture& picture);
-std::vector<std::byte> encode_depth_exr(const Geometry& geometry);
+std::vector<std::byte> encode_png(const DeepPicture& picture);
+std::vector<std::byte> encode_exr(const FloatPicture& picture, bool as_half);
 /// A film as EXR: float32 R, G, B, ZIP; exact, with the count of rejected samples as an attribute.
 std::vector<std::byte> encode_film_exr(const Film& film);
 /// Throws Error(asset) for bytes that `encode_film_exr` did not write. `name` stands in the

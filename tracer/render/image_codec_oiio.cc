@@ -197,20 +197,38 @@ DecodedImage decode_bytes(std::span<const std::byte> bytes, const std::string& f
   });
 }
 
-std::vector<std::byte> png(const Picture& picture) {
-  DS_ASSERT(picture.channels == 1 || picture.channels == 3);
-  OIIO::ImageSpec spec(picture.width, picture.height, picture.channels, OIIO::TypeDesc::UINT8);
-  DS_ASSERT(picture.pixels.size() == spec.image_bytes());
+std::vector<std::byte> png_of(int width, int height, int channels, OIIO::TypeDesc type,
+                              std::span<const std::byte> pixels) {
+  DS_ASSERT(channels == 1 || channels == 3);
+  OIIO::ImageSpec spec(width, height, channels, type);
+  DS_ASSERT(pixels.size() == spec.image_bytes());
   spec.attribute("png:compressionLevel", 6);
   spec.attribute("png:filter",
                  0x80);  // libpng's PNG_FILTER_PAETH on every row: its choice by trial may change
-  return encode("png", spec, picture.pixels.data());
+  return encode("png", spec, pixels.data());
 }
 
-std::vector<std::byte> depth_exr(const Geometry& geometry) {
-  const OIIO::ImageSpec spec = exr_spec(geometry.width, geometry.height, {"Z"});
-  DS_ASSERT(geometry.depth.size() * sizeof(float) == spec.image_bytes());
-  return encode("exr", spec, geometry.depth.data());
+std::vector<std::byte> png(const Picture& picture) {
+  return png_of(picture.width, picture.height, picture.channels, OIIO::TypeDesc::UINT8,
+                std::as_bytes(std::span(picture.pixels)));
+}
+
+std::vector<std::byte> deep_png(const DeepPicture& picture) {
+  return png_of(picture.width, picture.height, picture.channels, OIIO::TypeDesc::UINT16,
+                std::as_bytes(std::span(picture.pixels)));
+}
+
+std::vector<std::byte> float_exr(const FloatPicture& picture, bool as_half) {
+  OIIO::ImageSpec spec = exr_spec(picture.width, picture.height, picture.channels);
+  DS_ASSERT(picture.values.size() * sizeof(float) == spec.image_bytes());
+  if (!as_half) return encode("exr", spec, picture.values.data());
+  spec.set_format(OIIO::TypeDesc::HALF);
+  std::vector<std::uint16_t> halves(picture.values.size());
+  const bool good =
+      OIIO::convert_pixel_values(OIIO::TypeDesc::FLOAT, picture.values.data(), OIIO::TypeDesc::HALF,
+                                 halves.data(), static_cast<int>(halves.size()));
+  DS_ASSERT(good);
+  return encode("exr", spec, halves.data());
 }
 
 std::vector<std::byte> film_exr(const Film& film) {
@@ -245,7 +263,7 @@ Film film_of_exr(const std::vector<std::byte>& bytes, const std::string& format,
 }  // namespace
 
 extern "C" const ImageCodec* dsbuild_image_codec() {
-  static constexpr ImageCodec codec{decode_bytes, png, depth_exr, film_exr, film_of_exr};
+  static constexpr ImageCodec codec{decode_bytes, png, deep_png, float_exr, film_exr, film_of_exr};
   return &codec;
 }
 

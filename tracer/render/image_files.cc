@@ -57,8 +57,12 @@ std::vector<std::byte> encode_png(const Picture& picture) {
   return codec().encode_png(picture);
 }
 
-std::vector<std::byte> encode_depth_exr(const Geometry& geometry) {
-  return codec().encode_depth_exr(geometry);
+std::vector<std::byte> encode_png(const DeepPicture& picture) {
+  return codec().encode_deep_png(picture);
+}
+
+std::vector<std::byte> encode_exr(const FloatPicture& picture, bool as_half) {
+  return codec().encode_exr(picture, as_half);
 }
 
 std::vector<std::byte> encode_film_exr(const Film& film) {

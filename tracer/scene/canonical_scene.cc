@@ -172,7 +172,6 @@ class Writer {
     const Hash128 mesh = geometry_hash(object.mesh, reads);
     add("mesh", std::string_view(mesh.hex()));
     add("material", std::string_view(material_name(object.material)));
-    add("id", object.id);
     add("camerainvisible", object.camera_invisible);
   }
 

@@ -90,7 +90,7 @@ TEST_F(BuildTest, ARecipeOfMasksAndDepthsTracesNoPath) {
   EXPECT_EQ(result.traced_samples, 0U);
   EXPECT_THAT(calls.traced, IsEmpty());
   EXPECT_THAT(calls.announced, IsEmpty()) << "no path program is made";
-  EXPECT_THAT(calls.geometry, SizeIs(k_images));
+  EXPECT_THAT(calls.planes, SizeIs(k_images));
   EXPECT_EQ(contents().size(), k_images * 2 + 3);
   EXPECT_FALSE(fs::exists(output() / "images/box.off/0.png"));
   EXPECT_EQ(build().reused, k_images);
@@ -102,14 +102,14 @@ TEST_F(BuildTest, ARecipeOfPicturesAloneTracesNoGeometry) {
   EXPECT_TRUE(result.ok());
   EXPECT_EQ(result.built, k_images);
   EXPECT_THAT(calls.traced, SizeIs(k_images));
-  EXPECT_THAT(calls.geometry, IsEmpty());
+  EXPECT_THAT(calls.planes, IsEmpty());
   EXPECT_EQ(contents().size(), k_images + 3) << "no mask, no depth";
   build({.force = true});
-  EXPECT_THAT(calls.geometry, IsEmpty());
+  EXPECT_THAT(calls.planes, IsEmpty());
   // A mask asked for later traces itself alone.
   request.overrides = {"outputs.depth=false"};
   EXPECT_EQ(build().traced_samples, 0U);
-  EXPECT_THAT(calls.geometry, SizeIs(k_images));
+  EXPECT_THAT(calls.planes, SizeIs(k_images));
 }
 
 TEST_F(BuildTest, DepthTracesGeometryOnly) {
@@ -119,7 +119,7 @@ TEST_F(BuildTest, DepthTracesGeometryOnly) {
   EXPECT_EQ(result.built, k_images);
   EXPECT_EQ(result.traced_samples, 0U);
   EXPECT_THAT(calls.traced, IsEmpty());
-  EXPECT_THAT(calls.geometry, SizeIs(k_images));
+  EXPECT_THAT(calls.planes, SizeIs(k_images));
   EXPECT_TRUE(fs::exists(output() / "images/box.off/0.depth.exr"));
   request.overrides.clear();
   EXPECT_EQ(build().reused, k_images);
@@ -152,7 +152,7 @@ TEST_F(BuildTest, AnEditedMaterialTracesItsImagesOnly) {
   const BuildResult result = build();
   EXPECT_EQ(result.built, k_images / 2);
   EXPECT_EQ(result.traced_samples, k_images / 2 * 32 * 32);
-  EXPECT_THAT(calls.geometry, IsEmpty());
+  EXPECT_THAT(calls.planes, IsEmpty());
   // The old colour again: paid for already.
   edit("materials/green.mat", "kd = 0.1 0.5 0.1", "kd = 0.1 0.6 0.1");
   EXPECT_EQ(build().traced, 0U);

@@ -76,7 +76,7 @@ TEST_F(EnvironmentFactsTest, AreThoseOfTheScene) {
   const auto known = facts_from_text(to_text(facts, {}));
   ASSERT_TRUE(known);
   EXPECT_EQ(known->text, canonical_environment(scene));
-  EXPECT_EQ(known->shape, facts.shape);
+  EXPECT_EQ(known->shapes, facts.shapes);
   EXPECT_EQ(canonical_tone_map(known->tone_map), canonical_tone_map(scene.tone_map));
   EXPECT_EQ(known->unphysical, facts.unphysical);
   EXPECT_EQ(known->longest_side_m, facts.longest_side_m);

@@ -42,15 +42,21 @@ class KeysTest : public testing::Test {
 
 /// Which keys a change moves.
 struct Moved {
-  bool render, geometry, image;
+  bool render, mask, image;
   bool operator==(const Moved&) const = default;
 };
 std::ostream& operator<<(std::ostream& out, Moved m) {
-  return out << "render " << m.render << ", geometry " << m.geometry << ", image file " << m.image;
+  return out << "render " << m.render << ", mask " << m.mask << ", image file " << m.image;
+}
+Hash128 key_of(const ImageKeys& keys, std::string_view kind) {
+  for (const OutputFile& output : keys.outputs)
+    if (output.kind == kind) return output.key;
+  ADD_FAILURE() << "no output " << kind;
+  return {};
 }
 Moved moved(const ImageKeys& a, const ImageKeys& b) {
-  return {a.render != b.render, a.geometry != b.geometry,
-          a.outputs.front().key != b.outputs.front().key};
+  return {a.render != b.render, key_of(a, "mask") != key_of(b, "mask"),
+          key_of(a, "image") != key_of(b, "image")};
 }
 
 TEST_F(KeysTest, AreTheSameEachTime) {
@@ -132,7 +138,12 @@ TEST_F(KeysTest, EachSettingMovesWhatItCanChangeAndNothingElse) {
        [&] { recipe_.outputs.tone_map = ToneMap{.scale = 3}; },
        {false, false, true},
        -1},
-      {"depth", [&] { recipe_.outputs.depth = true; }, {false, false, false}, -1},
+      {"depth",
+       [&] {
+         recipe_.outputs.set_plane({&plane_type("depth"), PlaneEncoding::exr});
+       },
+       {false, false, false},
+       -1},
   };
   const Recipe recipe = recipe_;
   const ImageSpec image = image_;
@@ -287,7 +298,7 @@ TEST_F(KeysOfExtrasTest, UvsCountWhereTheMaterialReadsThem) {
 }
 
 TEST_F(KeysTest, PathsOfOutputsFollowTheId) {
-  recipe_.outputs.depth = true;
+  recipe_.outputs.set_plane({&plane_type("depth"), PlaneEncoding::exr});
   const ImageKeys made = keys();
   ASSERT_EQ(made.outputs.size(), 3U);
   EXPECT_EQ(made.outputs[0].path, "images/box.off/0.png");

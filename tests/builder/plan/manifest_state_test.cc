@@ -114,7 +114,7 @@ TEST_F(ManifestStateTest, AnOlderImageWhoseFileIsGoneIsNotListed) {
   std::string id;
   for (const PlannedImage& image : plan().images)
     if (image.error) id = image.spec.id;
-  fs::remove(output() / output_path(id, "mask"));
+  fs::remove(output() / output_path(id, ".mask.png"));
   build();
   EXPECT_EQ(records().size(), k_images - 1);
   EXPECT_FALSE(records().contains(id));
@@ -132,7 +132,7 @@ TEST_F(ManifestStateTest, AStandingManifestOfABrokenRecipeFollowsTheFiles) {
     const auto stamp = stamp_of(output() / "manifest/images.jsonl");
     build({.keep_going = !keep_going});
     EXPECT_EQ(stamp_of(output() / "manifest/images.jsonl"), stamp) << "written again for nothing";
-    const fs::path mask = output() / output_path(ids.back(), "mask");
+    const fs::path mask = output() / output_path(ids.back(), ".mask.png");
     if (keep_going)
       fs::remove(mask);
     else
@@ -150,7 +150,7 @@ TEST_F(ManifestStateTest, LinesOfImagesThatNoRecipeHasAreLookedAtAgain) {
   spoil("environments/floor/environment.scn");
   build();  // stops at once
   EXPECT_EQ(records().size(), k_images);
-  fs::remove(output() / output_path("tetra.ply/0", "mask"));
+  fs::remove(output() / output_path("tetra.ply/0", ".mask.png"));
   build();
   EXPECT_EQ(records().size(), k_images - 1);
 }

@@ -71,8 +71,14 @@ class Moving : public TinyDataset {
              *x.spec.environment_folder == *y.spec.environment_folder;
     };
     if (!all(shows)) return Moves::images;
-    const bool geometry =
-        !all([](const auto& x, const auto& y) { return x.keys.geometry == y.keys.geometry; });
+    // Of planes that both have.
+    const bool geometry = !all([](const auto& x, const auto& y) {
+      for (const OutputFile& one : x.keys.outputs)
+        for (const OutputFile& other : y.keys.outputs)
+          if (one.plane != nullptr && one.plane == other.plane && one.key != other.key)
+            return false;
+      return true;
+    });
     const bool film =
         !all([](const auto& x, const auto& y) { return x.keys.render == y.keys.render; });
     EXPECT_TRUE(film || !geometry) << "masks move, and pictures do not";
@@ -151,6 +157,7 @@ std::vector<Flip> Moving::flips() const {
       {"outputs.image", "\"png\"", "false"},
       {"outputs.mask", "true", "false"},
       {"outputs.depth", "false", "\"exr\""},
+      {"outputs.planes", "[]", "[\"uv\"]"},
       {"outputs.tone_map", "\"environment\"", "\"autolinear\""},
       {"outputs.tone_map_scale", "1", "2", {k_linear}},
       {"outputs.tone_map_prescale", "1", "2", {k_reinhard}},

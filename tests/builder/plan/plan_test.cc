@@ -65,7 +65,7 @@ TEST_F(PlanTest, AnEditOfAMaterialMakesItsImagesStaleAndSaysWhy) {
   for (const PlannedImage& image : all.images) {
     EXPECT_EQ(image.stale(), image.spec.material_name == "red") << image.spec.id;
     EXPECT_EQ(image.trace_film, image.stale());
-    EXPECT_FALSE(image.trace_geometry) << "a colour moves no mask";
+    EXPECT_FALSE(image.trace_planes) << "a colour moves no mask";
     if (image.stale()) {
       EXPECT_THAT(image.reasons,
                   ElementsAre(testing::AllOf(HasSubstr("material changed: "), HasSubstr("kd"),
@@ -78,7 +78,7 @@ TEST_F(PlanTest, AMovedMeshOfAnEnvironmentMovesItsMasks) {
   build();
   edit("environments/floor/floor.ply", "-1 -1 -0.0574", "-1 -1 -0.05");
   for (const PlannedImage& image : plan().images) {
-    EXPECT_EQ(image.trace_geometry, image.spec.environment_name == "floor");
+    EXPECT_EQ(image.trace_planes, image.spec.environment_name == "floor");
     EXPECT_EQ(image.trace_film, image.spec.environment_name == "floor");
   }
 }
@@ -92,7 +92,7 @@ TEST_F(PlanTest, MissingAndChangedFilesAreSeen) {
   std::size_t seen = 0;
   for (const PlannedImage& image : all.images) {
     seen += image.stale() ? 1U : 0U;
-    EXPECT_FALSE(image.trace_film || image.trace_geometry);
+    EXPECT_FALSE(image.trace_film || image.trace_planes);
     if (image.spec.id == "box.off/1") {
       EXPECT_THAT(image.reasons, ElementsAre("images/box.off/1.png is missing"));
     }

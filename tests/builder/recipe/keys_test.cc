@@ -102,8 +102,8 @@ TEST(RecipeKeys, HaveTheDefaultsOfTheStructsTheyFill) {
   EXPECT_EQ(recipe.outputs.tone_map->postscale, map.postscale);
   EXPECT_EQ(recipe.outputs.tone_map->burn, map.burn);
   EXPECT_EQ(recipe.outputs.tone_map->gamma, map.gamma);
-  EXPECT_EQ(recipe.outputs.mask, OutputSettings{}.mask);
-  EXPECT_EQ(recipe.outputs.depth, OutputSettings{}.depth);
+  ASSERT_EQ(recipe.outputs.planes.size(), 1U);
+  EXPECT_EQ(recipe.outputs.planes[0].type->name, "mask");
   EXPECT_EQ(recipe.keep_film, Recipe{}.keep_film);
   EXPECT_EQ(recipe.seed, Recipe{}.seed);
   EXPECT_EQ(recipe.assign_materials, Recipe{}.assign_materials);

@@ -87,8 +87,8 @@ keep_film = false
   EXPECT_EQ(recipe.engine.roulette_cap, 1);
   EXPECT_EQ(recipe.engine.filter_width, 0);
   EXPECT_EQ(recipe.engine.math, MathMode::fast);
-  EXPECT_FALSE(recipe.outputs.mask);
-  EXPECT_TRUE(recipe.outputs.depth);
+  EXPECT_EQ(recipe.outputs.find_plane("mask"), nullptr);
+  EXPECT_NE(recipe.outputs.find_plane("depth"), nullptr);
   ASSERT_TRUE(recipe.outputs.tone_map);
   EXPECT_EQ(recipe.outputs.tone_map->kind, ToneMap::Kind::reinhard02);
   EXPECT_EQ(recipe.outputs.tone_map->prescale, 2);

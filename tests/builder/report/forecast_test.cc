@@ -257,10 +257,11 @@ class TimedRenderer : public FakeRenderer {
     }
     return film;
   }
-  Geometry trace_geometry(const ImageSpec& image) override {
+  std::vector<Plane> trace_planes(const ImageSpec& image,
+                                  const std::vector<const PlaneType*>& types) override {
     load(image);
     clock += 0.03;
-    return FakeRenderer::trace_geometry(image);
+    return FakeRenderer::trace_planes(image, types);
   }
 
   double clock = 0;

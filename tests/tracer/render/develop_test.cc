@@ -141,25 +141,22 @@ TEST(Develop, ReinhardStandsBlackAndNoBurn) {
   EXPECT_EQ(developed_grey(1.0f, map), 255);
 }
 
-TEST(Develop, MaskIsBlackAndWhite) {
-  Geometry geometry{2, 1, {255, 0}, {1.5f, 0}};
-  const Picture picture = mask_picture(geometry);
-  EXPECT_EQ(picture.channels, 1);
-  EXPECT_THAT(picture.pixels, ElementsAre(255, 0));
+FloatPicture depths(int width, int height, std::vector<float> values) {
+  return {width, height, {"Z"}, std::move(values)};
 }
 
 TEST(Encoding, TheSameBytesEachTimeAndFromEachThread) {
   const Film film = gradient_film(97, 61);
   const Picture picture = develop(film, tone_map(ToneMap::Kind::linear));
-  const Geometry geometry{97, 61, {}, std::vector<float>(97 * 61, 0.25f)};
+  const FloatPicture geometry = depths(97, 61, std::vector<float>(97 * 61, 0.25f));
   const auto png = encode_png(picture), exr = encode_film_exr(film),
-             depth = encode_depth_exr(geometry);
+             depth = encode_exr(geometry, false);
   std::vector<std::thread> threads;
   for (int i = 0; i < 3; ++i)
     threads.emplace_back([&] {
       EXPECT_EQ(encode_png(picture), png);
       EXPECT_EQ(encode_film_exr(film), exr);
-      EXPECT_EQ(encode_depth_exr(geometry), depth);
+      EXPECT_EQ(encode_exr(geometry, false), depth);
     });
   for (std::thread& thread : threads)
     thread.join();
@@ -167,7 +164,7 @@ TEST(Encoding, TheSameBytesEachTimeAndFromEachThread) {
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));
   EXPECT_EQ(encode_png(picture), png);
   EXPECT_EQ(encode_film_exr(film), exr);
-  EXPECT_EQ(encode_depth_exr(geometry), depth);
+  EXPECT_EQ(encode_exr(geometry, false), depth);
 }
 
 TEST(Encoding, APngHoldsPixelsAndNothingElse) {
@@ -192,7 +189,7 @@ TEST(Encoding, APngHoldsPixelsAndNothingElse) {
 
 TEST(Encoding, AnExrNamesNoDateAndNoProgram) {
   for (const std::string& exr : {as_text(encode_film_exr(gradient_film(8, 8))),
-                                 as_text(encode_depth_exr(Geometry{2, 1, {}, {1, 2}}))}) {
+                                 as_text(encode_exr(depths(2, 1, {1, 2}), false))}) {
     const std::string header = exr.substr(0, exr.find("screenWindowWidth"));
     ASSERT_LT(header.size(), exr.size());
     for (const char* text : {"OpenImageIO", "oftware", "host", "utor", "wner"})
@@ -230,7 +227,7 @@ TEST(Encoding, WhatIsNoFilmIsAnAssetError) {
   EXPECT_THAT(message({}), HasSubstr("store/film: cannot be read as an image: wanted EXR"));
   EXPECT_THAT(message(encode_png(Picture{1, 1, 3, {1, 2, 3}})),
               HasSubstr("store/film: no film of ours"));
-  EXPECT_THAT(message(encode_depth_exr(Geometry{1, 1, {}, {1}})), HasSubstr("found 1 of float"));
+  EXPECT_THAT(message(encode_exr(depths(1, 1, {1}), false)), HasSubstr("found 1 of float"));
   for (const std::size_t kept :
        {std::size_t{4}, std::size_t{100}, film.size() / 2, film.size() - 1}) {
     const std::vector<std::byte> torn(film.begin(),
@@ -243,8 +240,8 @@ TEST(PixelHash, IsTheHashOfHeaderAndPixels) {
   const Picture picture{2, 1, 3, {1, 2, 3, 4, 5, 250}};
   EXPECT_EQ(pixel_hash(encode_png(picture), "p"),
             hash_text(std::string("2x1x3 uint8\n\1\2\3\4\5\372", 18)));
-  const Geometry geometry{2, 1, {}, {1.0f, -2.0f}};
-  EXPECT_EQ(pixel_hash(encode_depth_exr(geometry), "d"),
+  const FloatPicture geometry = depths(2, 1, {1.0f, -2.0f});
+  EXPECT_EQ(pixel_hash(encode_exr(geometry, false), "d"),
             hash_text(std::string("2x1x1 float\n\0\0\x80\x3f\0\0\0\xc0", 20)));
 }
 

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/make/plane_outputs.h"
+
+#include "tracer/base/error.h"
+
+#include <algorithm>
+
+namespace ds {
+namespace {
+
+const Plane* find(const std::vector<Plane>& planes, const PlaneType& type) {
+  const auto found = std::find_if(planes.begin(), planes.end(),
+                                  [&](const Plane& plane) { return plane.type == &type; });
+  return found == planes.end() ? nullptr : &*found;
+}
+
+std::vector<std::uint8_t> covered(const Plane& plane) {
+  std::vector<std::uint8_t> samples;
+  samples.reserve(plane.values.size());
+  for (const float value : plane.values)
+    samples.push_back(value > 0 ? 255 : 0);
+  return samples;
+}
+
+}  // namespace
+
+std::vector<const PlaneType*> planes_of(const OutputSettings& outputs) {
+  OutputSettings all = outputs;
+  const PlaneType& mask = plane_type("mask");
+  if (all.find_plane("mask") == nullptr) all.set_plane({&mask, encodings_of(mask).front()});
+  std::vector<const PlaneType*> types;
+  for (const PlaneOutput& plane : all.planes)
+    types.push_back(plane.type);
+  return types;
+}
+
+PixelCounts count_planes(const std::vector<Plane>& planes) {
+  PixelCounts counts;
+  if (const Plane* mask = find(planes, plane_type("mask")))
+    add_counts(counts, count_mask(covered(*mask), mask->width, mask->height));
+  if (const Plane* alone = find(planes, plane_type("amodal_mask")))
+    add_counts(counts, count_amodal_mask(covered(*alone), alone->width, alone->height));
+  return counts;
+}
+
+std::vector<std::byte> encode_output(const OutputSettings& outputs, const OutputFile& output,
+                                     const std::vector<Plane>& planes) {
+  const Plane* plane = find(planes, *output.plane);
+  const PlaneOutput* wanted = outputs.find_plane(output.kind);
+  DS_ASSERT(plane != nullptr && wanted != nullptr);
+  return encode_plane(*plane, wanted->encoding);
+}
+
+}  // namespace ds

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/plan/keys.h"
+#include "builder/recipe/recipe.h"
+#include "manifests/pixel_counts.h"
+#include "tracer/render/render.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace ds {
+
+/// What is traced where any plane is to be made: all that are wanted, so that a dataset has one
+/// program for them, and the mask, whose counts tell whether an image shows its model.
+std::vector<const PlaneType*> planes_of(const OutputSettings& outputs);
+/// Of what planes_of traced.
+PixelCounts count_planes(const std::vector<Plane>& planes);
+/// The file of one of them.
+std::vector<std::byte> encode_output(const OutputSettings& outputs, const OutputFile& output,
+                                     const std::vector<Plane>& planes);
+
+}  // namespace ds

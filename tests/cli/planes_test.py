@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Planes of images, from recipe to files, as a reader of the files and the manifest sees them."""
+import json
+import math
+
+import image_reader
+from harness import IMAGES, TinyCase, main
+
+FLOATS = ["depth", "distance", "position", "geometry_normal", "shading_normal", "uv"]
+ALL = ["mask", "amodal_mask", "object_id", "material_id", *FLOATS]
+
+
+def planes(*names):
+    return ["--set", f"outputs.planes={json.dumps(list(names))}"]
+
+
+class PlanesTest(TinyCase):
+    def records(self, out=None):
+        lines = (out or self.out).joinpath("manifest/images.jsonl").read_text().splitlines()
+        return [json.loads(line) for line in lines]
+
+    def values(self, record, kind, out=None):
+        """Tuples of numbers, pixel by pixel."""
+        path = next(file["path"] for file in record["files"] if file["kind"] == kind)
+        path = (out or self.out) / path
+        if path.suffix == ".png":
+            width, height, channels, bits, samples = image_reader.read_png(path)
+            rows = list(zip(*[iter(samples)] * channels))
+        else:
+            width, height, channels = image_reader.read_exr(path)
+            rows = list(zip(*(channels[name] for name in (["Y"] if "Y" in channels else ["R", "G", "B"]))))
+        self.assertEqual((width, height), (record["width"], record["height"]), path)
+        self.assertEqual(len(rows), width * height, path)
+        return rows
+
+    def test_planes_agree_with_each_other_and_with_the_manifest(self):
+        self.edit("environments/floor/environment.scn", "scene.objects.floor.material",
+                  "scene.objects.floor.id = 40000\nscene.objects.floor.material")
+        self.build(*planes(*ALL))
+        told = json.loads((self.out / "manifest/dataset.json").read_text())["planes"]
+        self.assertEqual(set(told), set(ALL))
+        self.assertEqual(told["depth"]["encoding"], "exr")
+        self.assertIn("metres", told["depth"]["convention"])
+        ids = set()
+        for record in self.records():
+            plane = {kind: self.values(record, kind) for kind in ALL}
+            pose, k = record["camera_to_world"], record["intrinsics"]
+            eye = [row[3] for row in pose[:3]]
+            for i in range(record["width"] * record["height"]):
+                depth, mask = plane["depth"][i][0], plane["mask"][i][0]
+                self.assertEqual(mask, 255 if plane["object_id"][i][0] == 1 else 0)
+                self.assertGreaterEqual(plane["amodal_mask"][i][0], mask)
+                ids.add(plane["object_id"][i][0])
+                if depth == 0:
+                    for kind in FLOATS:
+                        self.assertEqual(set(plane[kind][i]), {0}, kind)
+                    continue
+                x = (i % record["width"] + 0.5 - k[0][2]) / k[0][0]
+                y = (i // record["width"] + 0.5 - k[1][2]) / k[1][1]
+                way = [row[0] * x + row[1] * y + row[2] for row in pose[:3]]
+                point = [e + depth * w for e, w in zip(eye, way)]
+                for found, right in zip(plane["position"][i], point):
+                    self.assertAlmostEqual(found, right, delta=1e-5)
+                self.assertAlmostEqual(plane["distance"][i][0], math.dist(eye, point), delta=1e-5)
+                for kind in ("geometry_normal", "shading_normal"):
+                    normal = plane[kind][i]
+                    self.assertAlmostEqual(sum(n * n for n in normal), 1, delta=1e-5)
+                    self.assertLess(sum(n * w for n, w in zip(normal, way)), 1e-4, kind)
+            counts = record["pixel_counts"]
+            self.assertEqual(counts["amodal"], sum(v[0] == 255 for v in plane["amodal_mask"]))
+            self.assertAlmostEqual(record["visible_fraction"], counts["model"] / counts["amodal"])
+        self.assertEqual(ids, {0, 1, 40000})
+
+    def test_encodings_hold_the_same_numbers(self):
+        self.build(*planes(*FLOATS))
+        other, deep = self.folder / "half", self.folder / "png"
+        self.build(*planes(*(f"{name}:half" for name in FLOATS)), out=other)
+        self.build(*planes("depth:png16", "distance:png16", "geometry_normal:png16", "shading_normal:png8",
+                           "object_id:png8"), out=deep)
+        whole = {"depth": 1000, "distance": 1000, "geometry_normal": 65535, "shading_normal": 255}
+        for exact, half, png in zip(self.records(), self.records(other), self.records(deep)):
+            for kind in FLOATS:
+                for right, found in zip(self.values(exact, kind), self.values(half, kind, other)):
+                    for a, b in zip(right, found):
+                        self.assertAlmostEqual(a, b, delta=abs(a) / 2048 + 1e-7, msg=kind)
+            for kind, most in whole.items():
+                for right, found in zip(self.values(exact, kind), self.values(png, kind, deep)):
+                    met = any(right)
+                    for a, b in zip(right, found):
+                        wanted = 0 if not met else a * most if most == 1000 else (a + 1) / 2 * most
+                        self.assertLessEqual(abs(b - wanted), 0.51, kind)
+
+    def test_a_plane_more_moves_no_other_file(self):
+        self.build()
+        before = self.contents()
+        self.assert_counts(self.build(*planes("uv", "SHADING_NORMAL")), built=IMAGES, traced_samples=0)
+        after = self.contents()
+        self.assertEqual({name: after[name] for name in before if name.startswith("images")},
+                         {name: data for name, data in before.items() if name.startswith("images")})
+        self.assertEqual(len(after), len(before) + 2 * IMAGES)
+        # And one less takes its files away.
+        self.build(*planes("uv"))
+        self.assertEqual(len(self.contents()), len(before) + IMAGES)
+
+    def test_what_a_plane_does_not_read_leaves_it(self):
+        wanted = planes(*ALL)
+        self.build(*wanted)
+        before = self.contents()
+        self.edit("materials/red.mat", "scene.materials.red.type", "scene.materials.red.id = 9\nscene.materials.red.type")
+        self.assert_counts(self.build(*wanted), traced_samples=0)
+        after = self.contents()
+        changed = [name for name in before if before[name] != after[name] and name.startswith("images/")]
+        self.assertTrue(changed)
+        self.assertEqual([name for name in changed if not name.endswith(".material_id.png")], [])
+
+    def test_without_picture_and_mask(self):
+        counts = self.build("--set", "outputs.image=false", "--set", "outputs.mask=false", *planes("DEPTH"))
+        self.assert_counts(counts, built=IMAGES, traced_samples=0)
+        self.assertEqual({file["kind"] for record in self.records() for file in record["files"]}, {"distance"})
+        verified = self.run_it("verify", self.recipe, "-o", self.out, "--rerender", IMAGES, "--set", "outputs.image=false",
+                               "--set", "outputs.mask=false", *planes("DEPTH"))
+        self.assertEqual(verified.code, 0, verified)
+
+    def test_mistakes(self):
+        for given, message in ((["dept"], 'wanted planes (mask, amodal_mask, depth, '),
+                               (["dept"], "did you mean depth?"),
+                               (["depth:png8"], 'wanted depth as exr, half, png16, got "png8"'),
+                               (["uv", "UV:half"], "names uv twice"),
+                               ([3], "outputs.planes: must be a list of strings, got 3")):
+            run = self.run_it("plan", self.recipe, "-o", self.out, *planes(*given))
+            self.assertEqual(run.code, 2, run)
+            self.assertIn(message, run.err)
+        self.edit("environments/floor/environment.scn", "scene.objects.floor.material",
+                  "scene.objects.floor.id = 70000\nscene.objects.floor.material")
+        run = self.run_it("build", self.recipe, "-o", self.out, *planes("object_id"))
+        self.assertNotEqual(run.code, 0, run)
+        self.assertIn("the plane object_id holds the id 70000, and its file at most 65535", run.err)
+
+
+if __name__ == "__main__":
+    main()
