@@ -72,5 +72,7 @@ function(ds_test name)
   if(NOT "render" IN_LIST A_LABELS)
     add_dependencies(tests_without_pictures ${name})
   endif()
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${A_LABELS}")
+  # Of a list gtest_discover_tests takes the first alone; ctest -L and -LE look for a part of a label.
+  string(REPLACE ";" "_" labels "${A_LABELS}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${labels}")
 endfunction()
