@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path place_of(const fs::path& path) {
+fs::path resolved(const fs::path& path) {
   std::error_code error;
   fs::path place = fs::weakly_canonical(path, error);
   if (error) place = path.lexically_normal();
@@ -45,9 +45,9 @@ bool is_inside(const fs::path& path, const fs::path& folder) {
 }  // namespace
 
 void check_no_input_folder(const fs::path& folder, std::string_view option, const Recipe& recipe) {
-  const fs::path place = place_of(folder);
+  const fs::path place = resolved(folder);
   for (const auto& [input, what] : input_folders(recipe)) {
-    const fs::path input_place = place_of(input);
+    const fs::path input_place = resolved(input);
     bool hit = input_place == place;
     for (const char* own : {"images", "manifest", ".dsbuild"})
       hit = hit || is_inside(input_place, place / own);
