@@ -99,20 +99,37 @@ std::uint32_t bits(double value) {
   return std::bit_cast<std::uint32_t>(static_cast<float>(value));
 }
 
-/// The photons of each cell of the cube.
+/// The photons of each cell of the cube. Most cells have none, and are passed over in a few steps of
+/// a row of numbers: a small picture's table is made of a few thousand photons.
 class PhotonCells {
  public:
   PhotonCells(std::span<const Photon> photons, const Cube& cube)
-      : photons_(photons), cells_(k_side * k_side * k_side) {
-    for (std::size_t i = 0; i < photons.size(); ++i) {
-      const auto [x, y, z] = cube.cell(photons[i].position);
-      if (is_inside(x) && is_inside(y) && is_inside(z))
-        cells_[number(x, y, z)].push_back(static_cast<std::uint32_t>(i));
+      : begin_(k_cells + 1, 0), near_(k_rim_side * k_rim_side * k_rim_side, 0) {
+    std::vector<std::size_t> place;
+    place.reserve(photons.size());
+    for (const Photon& photon : photons) {
+      const auto [x, y, z] = cube.cell(photon.position);
+      const bool inside = is_inside(x) && is_inside(y) && is_inside(z);
+      place.push_back(inside ? number(x, y, z) : k_cells);
+      if (!inside) continue;
+      ++begin_[number(x, y, z) + 1];
     }
+    for (std::size_t cell = 0; cell < k_cells; ++cell) {
+      if (begin_[cell + 1] > 0) count_near(cell, begin_[cell + 1]);
+      begin_[cell + 1] += begin_[cell];
+    }
+    // In the photons' order within a cell: sums depend on it.
+    sources_.resize(begin_[k_cells]);
+    std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
+    for (std::size_t i = 0; i < photons.size(); ++i)
+      if (place[i] < k_cells)
+        sources_[next[place[i]]++] = {to_double(photons[i].source), double{photons[i].power}};
   }
   static std::size_t number(long x, long y, long z) {
     return static_cast<std::size_t>((z * long{k_side} + y) * long{k_side} + x);
   }
+  /// Photons that `gather` finds.
+  std::size_t near(long x, long y, long z) const { return near_[rim_number(x, y, z)]; }
   /// Of a cell and, for less, of the 26 around it: a cell's own are few.
   void gather(long x, long y, long z, std::vector<Source>& sources) const {
     sources.clear();
@@ -121,16 +138,33 @@ class PhotonCells {
         for (long u = x - 1; u < x + 2; ++u) {
           if (!is_inside(u) || !is_inside(v) || !is_inside(w)) continue;
           const double share = u == x && v == y && w == z ? 1 : 0.125;
-          for (const std::uint32_t i : cells_[number(u, v, w)])
-            sources.push_back({to_double(photons_[i].source), share * double{photons_[i].power}});
+          const std::size_t cell = number(u, v, w);
+          for (std::size_t i = begin_[cell]; i < begin_[cell + 1]; ++i)
+            sources.push_back({sources_[i].at, share * sources_[i].weight});
         }
   }
 
  private:
-  static bool is_inside(long i) { return i >= 0 && i < long{k_side}; }
+  static constexpr std::size_t k_cells = k_side * k_side * k_side;
+  static constexpr std::size_t k_rim_side = k_side + 2;  ///< with the cells just outside
 
-  std::span<const Photon> photons_;
-  std::vector<std::vector<std::uint32_t>> cells_;
+  static bool is_inside(long i) { return i >= 0 && i < long{k_side}; }
+  static std::size_t rim_number(long x, long y, long z) {
+    return static_cast<std::size_t>(((z + 1) * long{k_rim_side} + y + 1) * long{k_rim_side} + x +
+                                    1);
+  }
+  void count_near(std::size_t cell, std::uint32_t count) {
+    const auto x = static_cast<long>(cell % k_side), y = static_cast<long>(cell / k_side % k_side),
+               z = static_cast<long>(cell / (k_side * k_side));
+    for (long w = z - 1; w < z + 2; ++w)
+      for (long v = y - 1; v < y + 2; ++v)
+        for (long u = x - 1; u < x + 2; ++u)
+          near_[rim_number(u, v, w)] += count;
+  }
+
+  std::vector<Source> sources_;       ///< of the first cell, of the second, ...
+  std::vector<std::uint32_t> begin_;  ///< of each cell in sources_, and the end
+  std::vector<std::uint32_t> near_;   ///< photons in and around each cell
 };
 
 /// Spheres that hold nearly all of their sources, and are no points where a few photons agree.
@@ -169,8 +203,8 @@ std::vector<std::uint32_t> guide_table(std::span<const Photon> photons, Vec3 cen
   for (long z = 0; z < long{k_side}; ++z)
     for (long y = 0; y < long{k_side}; ++y)
       for (long x = 0; x < long{k_side}; ++x) {
+        if (cells.near(x, y, z) < k_least_photons) continue;
         cells.gather(x, y, z, sources);
-        if (sources.size() < k_least_photons) continue;
         words[kernels::k_guide_cells + PhotonCells::number(x, y, z)] =
             static_cast<std::uint32_t>(words.size());
         add_lobes(sources, double{radius}, words);
