@@ -67,6 +67,7 @@ void Connection::fail_sqlite(int code) const {
 }
 
 Statement Connection::prepare(const char* sql) {
+  const std::lock_guard lock(mutex_);
   sqlite3_stmt*& statement = statements_[sql];
   if (statement == nullptr) {
     const int code =
@@ -78,6 +79,7 @@ Statement Connection::prepare(const char* sql) {
 }
 
 void Connection::execute(const char* sql) {
+  const std::lock_guard lock(mutex_);
   const int code = sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr);
   if (code != SQLITE_OK) fail_sqlite(code);
 }
@@ -89,14 +91,20 @@ void Connection::check() {
 }
 
 int Connection::changes() const {
+  const std::lock_guard lock(mutex_);
   return sqlite3_changes(handle_);
 }
 
 std::int64_t Connection::runs() const {
+  const std::lock_guard lock(mutex_);
   std::int64_t runs = 0;
   for (const auto& [sql, statement] : statements_)
     runs += sqlite3_stmt_status(statement, SQLITE_STMTSTATUS_RUN, 0);
   return runs;
+}
+
+std::unique_lock<std::recursive_mutex> Statement::lock_of(Connection& connection) {
+  return std::unique_lock(connection.mutex_);
 }
 
 Statement::~Statement() {
@@ -185,7 +193,7 @@ std::string_view Statement::view(int column) const {
           static_cast<std::size_t>(sqlite3_column_bytes(handle_, column))};
 }
 
-Snapshot::Snapshot(Connection& connection) : connection_(connection) {
+Snapshot::Snapshot(Connection& connection) : lock_(connection.mutex_), connection_(connection) {
   connection_.execute("BEGIN");
 }
 
@@ -197,7 +205,8 @@ Snapshot::~Snapshot() {
   }
 }
 
-Transaction::Transaction(Connection& connection) : connection_(connection) {
+Transaction::Transaction(Connection& connection)
+    : lock_(connection.mutex_), connection_(connection) {
   // IMMEDIATE: taking the write lock at the first write instead can fail at once with SQLITE_BUSY
   // where another process wrote after this one read, whatever the timeout.
   connection_.execute("BEGIN IMMEDIATE");

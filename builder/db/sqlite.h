@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,13 +26,14 @@ class DamagedDatabase : public Error {
 
 class Connection;
 
-/// A prepared statement borrowed from its connection and reset when this goes. Parameters and
+/// A prepared statement borrowed from its connection and reset when this goes; other threads wait
+/// for the connection until then. Parameters and
 /// columns count from 1 and 0, as in SQLite. Every call throws Error(io) with the file and SQLite's
 /// reason, or DamagedDatabase.
 class Statement {
  public:
   Statement(Connection& connection, sqlite3_stmt* handle)
-      : connection_(connection), handle_(handle) {}
+      : lock_(lock_of(connection)), connection_(connection), handle_(handle) {}
   ~Statement();
   Statement(const Statement&) = delete;
   Statement& operator=(const Statement&) = delete;
@@ -61,12 +63,15 @@ class Statement {
   std::string_view view(int column) const;
 
  private:
+  static std::unique_lock<std::recursive_mutex> lock_of(Connection& connection);
+
+  std::unique_lock<std::recursive_mutex> lock_;  ///< goes last
   Connection& connection_;
   sqlite3_stmt* handle_;
 };
 
-/// One open SQLite file. Not safe from two threads at once; any number of processes may have the
-/// file open.
+/// One open SQLite file, which any number of processes may have open. Threads take turns: a
+/// statement, a snapshot or a transaction holds the connection as long as it lives.
 class Connection {
  public:
   /// Opens or makes the file, in WAL mode with synchronous = FULL: a transaction that returned
@@ -90,8 +95,11 @@ class Connection {
 
  private:
   friend class Statement;
+  friend class Snapshot;
+  friend class Transaction;
   [[noreturn]] void fail_sqlite(int code) const;
 
+  mutable std::recursive_mutex mutex_;
   std::string name_;
   sqlite3* handle_ = nullptr;
   std::map<const char*, sqlite3_stmt*> statements_;
@@ -107,6 +115,7 @@ class Snapshot {
   Snapshot& operator=(const Snapshot&) = delete;
 
  private:
+  std::unique_lock<std::recursive_mutex> lock_;
   Connection& connection_;
 };
 
@@ -120,6 +129,7 @@ class Transaction {
   void commit();
 
  private:
+  std::unique_lock<std::recursive_mutex> lock_;
   Connection& connection_;
   bool open_ = true;
 };

@@ -20,6 +20,7 @@
 #include <thread>
 #include <tuple>
 #include <unistd.h>
+#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
@@ -70,6 +71,8 @@ class Execution {
   Queue sort_images();
   void make_all(Queue queue);
   bool make_one(const PlannedImage& image);
+  void take_kept();
+  void catch_failure(const PlannedImage& image, const std::function<void()>& work);
   void fail_image(const PlannedImage& image, const std::string& why);
   void collect_failures();
   bool is_as_planned() const;
@@ -98,7 +101,9 @@ class Execution {
   const std::atomic<bool>& stop_;
   ImageMaker maker_;
   BuildResult result_;
-  std::unordered_set<const PlannedImage*> made_;              ///< by this build
+  std::unordered_set<const PlannedImage*> made_;  ///< by this build
+  /// Of images under way, until they are kept: another process would make them too.
+  std::unordered_map<const PlannedImage*, Claims::Claim> claims_;
   std::map<std::string, std::vector<std::string>> failures_;  ///< image ids by what went wrong
   std::string no_device_;                                     ///< why nothing can be traced
   std::int64_t build_number_ = 0;
@@ -142,12 +147,12 @@ Execution::Queue Execution::sort_images() {
     if (image.error) {
       fail_image(image, image.error->what());
     } else if (image.stale()) {
-      if (options_.copy) maker_.part_from_store(image);
+      if (options_.copy) maker_.keeper().part_from_store(image);
       queue.push_back(&image);
     } else {
       ++result_.reused;
-      if (image.record) maker_.record(image);
-      if (options_.copy) maker_.part_from_store(image);
+      if (image.record) maker_.keeper().record(image);
+      if (options_.copy) maker_.keeper().part_from_store(image);
     }
   }
   std::stable_sort(queue.begin(), queue.end(), [](const PlannedImage* a, const PlannedImage* b) {
@@ -159,21 +164,10 @@ Execution::Queue Execution::sort_images() {
   return queue;
 }
 
-/// False where another process is making the image now.
-bool Execution::make_one(const PlannedImage& image) {
-  const auto claim = dataset_.claims->try_image(image.keys.render);
-  if (!claim) return false;
-  observer_.image_started(image);
+/// Enters what stops one image.
+void Execution::catch_failure(const PlannedImage& image, const std::function<void()>& work) {
   try {
-    const ImageWork work = maker_.make(
-        image, options_.force,
-        [&](const TraceProgress& progress) { observer_.progress(image, progress); }, stop_);
-    ++result_.built;
-    made_.insert(&image);
-    result_.traced += work.traced ? 1U : 0U;
-    result_.developed += work.developed ? 1U : 0U;
-    result_.traced_samples += work.samples;
-    observer_.image_done(image, work);
+    work();
   } catch (const DamagedDatabase&) {
     throw;
   } catch (const DiskFailed& error) {
@@ -187,7 +181,37 @@ bool Execution::make_one(const PlannedImage& image) {
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::cancelled) fail_image(image, error.what());
   }
+}
+
+/// False where another process is making the image now.
+bool Execution::make_one(const PlannedImage& image) {
+  auto claim = dataset_.claims->try_image(image.keys.render);
+  if (!claim) return false;
+  observer_.image_started(image);
+  catch_failure(image, [&] {
+    maker_.start(
+        image, options_.force,
+        [&](const TraceProgress& progress) { observer_.progress(image, progress); }, stop_);
+    claims_.emplace(&image, *std::move(claim));
+  });
   return true;
+}
+
+/// Counts the images whose files are in place by now.
+void Execution::take_kept() {
+  for (const KeptImage& kept : maker_.keeper().take()) {
+    claims_.erase(kept.image);
+    if (kept.dropped) continue;
+    catch_failure(*kept.image, [&] {
+      if (kept.error) std::rethrow_exception(kept.error);
+      ++result_.built;
+      made_.insert(kept.image);
+      result_.traced += kept.work.traced ? 1U : 0U;
+      result_.developed += kept.work.developed ? 1U : 0U;
+      result_.traced_samples += kept.work.samples;
+      observer_.image_done(*kept.image, kept.work);
+    });
+  }
 }
 
 void Execution::make_all(Queue queue) {
@@ -200,13 +224,17 @@ void Execution::make_all(Queue queue) {
   while (!queue.empty() && !cut_short()) {
     const PlannedImage* image = queue.front();
     queue.pop_front();
-    if (make_one(*image)) {
+    const bool started = make_one(*image);
+    take_kept();
+    if (started) {
       put_back = 0;
       continue;
     }
     queue.push_back(image);
     if (++put_back >= queue.size()) std::this_thread::sleep_for(k_claim_poll);
   }
+  maker_.keeper().finish();
+  take_kept();
   result_.stopped = stop_ && !queue.empty();
 }
 
@@ -320,7 +348,7 @@ void Execution::finish() {
     if (take_standing_manifest(images, *sources, *plan_.placed)) return;
   }
   begin();
-  maker_.remember_stamps();
+  maker_.keeper().remember_stamps();
   // Of builds that end at once, the last to write must have seen what all of them placed.
   const Claims::Claim claim = dataset_.claims->own_datasets();
   if (!cut_short()) remove_left_over();

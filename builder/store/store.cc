@@ -6,6 +6,7 @@
 #include "tracer/base/log.h"
 
 #include <algorithm>
+#include <set>
 #include <system_error>
 
 namespace ds {
@@ -37,12 +38,23 @@ std::optional<std::vector<std::byte>> Store::read_whole(const fs::path& file, Ha
 }
 
 Hash128 Store::put(std::span<const std::byte> bytes) {
-  const Hash128 object = hash_bytes(bytes);
-  if (intact(object)) return object;
-  const fs::path file = path_of(k_objects, object);
-  disk_.write(file, bytes);
-  remove_write_permission(file);  // output files may be hard links to it
-  return object;
+  const NewObject object{hash_bytes(bytes), bytes};
+  put_all({&object, 1}, {});
+  return object.hash;
+}
+
+void Store::put_all(std::span<const NewObject> objects, std::span<const std::string> records) {
+  std::vector<FileToWrite> files;
+  std::set<Hash128> seen;
+  for (const NewObject& object : objects)
+    if (seen.insert(object.hash).second && !intact(object.hash))
+      files.push_back({path_of(k_objects, object.hash), object.bytes});
+  const std::size_t new_objects = files.size();
+  for (const std::string& text : records)
+    files.push_back({path_of(k_records, hash_text(text)), bytes_of(text)});
+  if (!files.empty()) disk_.write_all(files);
+  for (std::size_t i = 0; i < new_objects; ++i)
+    remove_write_permission(files[i].file);  // output files may be hard links to it
 }
 
 bool Store::has(Hash128 object) const {
@@ -59,20 +71,20 @@ std::optional<std::vector<std::byte>> Store::get(Hash128 object) {
 }
 
 void Store::place(Hash128 object, const fs::path& target, Placing placing) {
-  const fs::path file = path_of(k_objects, object);
-  if (placing == Placing::copy)
-    disk_.copy(file, target);
-  else
-    disk_.link(file, target);
+  const ObjectToPlace one{object, target};
+  place_all({&one, 1}, placing);
+}
+
+void Store::place_all(std::span<const ObjectToPlace> files, Placing placing) {
+  std::vector<FileToPlace> all;
+  for (const ObjectToPlace& one : files)
+    all.push_back({path_of(k_objects, one.object), one.target, placing == Placing::copy});
+  if (!all.empty()) disk_.place_all(all);
 }
 
 bool Store::is_object(const fs::path& file, Hash128 object) const {
   std::error_code absent;
   return fs::equivalent(file, path_of(k_objects, object), absent);
-}
-
-void Store::put_record(std::string_view text) {
-  disk_.write(path_of(k_records, hash_text(text)), bytes_of(text));
 }
 
 void Store::visit_records(const std::function<void(const std::string& text)>& visit) {

@@ -34,6 +34,13 @@ class Store {
 
   /// Throws Error(io) where the disk refuses.
   Hash128 put(std::span<const std::byte> bytes);
+  /// Several objects, given by the hash of their bytes, and records, waiting for the disk as often as
+  /// for one. Where it throws, any of them may be there, whole.
+  struct NewObject {
+    Hash128 hash;
+    std::span<const std::byte> bytes;
+  };
+  void put_all(std::span<const NewObject> objects, std::span<const std::string> records);
   /// Whether there is such an object, without reading it.
   bool has(Hash128 object) const;
   /// Whether there is such an object, whole.
@@ -41,10 +48,15 @@ class Store {
   std::optional<std::vector<std::byte>> get(Hash128 object);
   /// Makes `target` the object's bytes. `intact` must have been asked before.
   void place(Hash128 object, const std::filesystem::path& target, Placing placing = Placing::share);
+  struct ObjectToPlace {
+    Hash128 object;
+    std::filesystem::path target;
+  };
+  void place_all(std::span<const ObjectToPlace> files, Placing placing);
   /// Whether the file is a hard link to the object.
   bool is_object(const std::filesystem::path& file, Hash128 object) const;
 
-  void put_record(std::string_view text);
+  void put_record(const std::string& text) { put_all({}, {&text, 1}); }
   /// Calls `visit` with the text of every whole record, in no particular order.
   void visit_records(const std::function<void(const std::string& text)>& visit);
 

@@ -23,6 +23,7 @@ class FakeRenderer : public Renderer {
   /// What all fakes of one build share.
   struct Calls {
     std::vector<std::string> traced, planes, announced;  ///< ids in order
+    std::atomic<std::size_t> films{0};                   ///< traced; for other threads
     std::string fails_on;                                ///< id of an image that cannot be traced
     std::map<std::string, std::uint64_t> rejected;       ///< samples that are NaN, by id
     std::atomic<bool>* stop_after_one = nullptr;
@@ -35,6 +36,7 @@ class FakeRenderer : public Renderer {
     if (stop) fail(ErrorKind::cancelled, "stopped");
     if (image.id == calls_.fails_on) fail(ErrorKind::device, "the fake was told to fail");
     calls_.traced.push_back(image.id);
+    ++calls_.films;
     if (progress) progress({1, 1});
     Film film{image.engine.width, image.engine.height, {}, 0};
     const std::uint64_t seed = hash64_text(seed_text(image));

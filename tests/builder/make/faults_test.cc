@@ -38,6 +38,8 @@ class FaultyDisk : public RealDisk {
     if (due()) strike(to, bytes_of("half of a picture"));
     RealDisk::link(from, to);
   }
+  void write_all(std::span<const FileToWrite> files) override { Disk::write_all(files); }
+  void place_all(std::span<const FileToPlace> files) override { Disk::place_all(files); }
   void remove(const fs::path& file) override {
     if (due()) strike(file, {});
     RealDisk::remove(file);
@@ -103,6 +105,7 @@ class PickyDisk : public RealDisk {
     if (to.filename() == name_) fail_system(to, "rename a finished temporary to", ENAMETOOLONG);
     RealDisk::link(from, to);
   }
+  void place_all(std::span<const FileToPlace> files) override { Disk::place_all(files); }
   void remove(const fs::path& file) override {
     if (file.filename() == name_) fail_system(file, "remove", EACCES);
     RealDisk::remove(file);

@@ -2,12 +2,16 @@
 #include "tracer/base/files.h"
 
 #include "tracer/base/disk_error.h"
+#include "tracer/base/file_batch.h"
+#include "tracer/base/hash.h"
 
 #include <gtest/gtest.h>
 
 #include <cerrno>
 #include <fstream>
 #include <iterator>
+#include <set>
+#include <string>
 
 namespace ds {
 namespace {
@@ -115,6 +119,68 @@ TEST(FilesTest, reading_tells_the_path_and_the_reason) {
     EXPECT_EQ(error.kind(), ErrorKind::io);
     EXPECT_STREQ(error.what(), "/nonexistent/file: cannot open: No such file or directory");
   }
+}
+
+/// Names in a folder, hidden ones too.
+std::set<std::string> names_in(const std::filesystem::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    names.insert(entry.path().filename());
+  return names;
+}
+
+TEST(FileBatchTest, replaces_all_at_its_commit_and_not_before) {
+  const TemporaryFolder folder;
+  write_file_atomic(folder.path() / "a", "old");
+  write_file_atomic(folder.path() / "from", "linked");
+  FileBatch batch;
+  batch.write(folder.path() / "a", bytes_of(std::string_view("one")));
+  batch.write(folder.path() / "sub/b", bytes_of(std::string_view("two")));
+  batch.link(folder.path() / "from", folder.path() / "sub/c");
+  batch.copy(folder.path() / "from", folder.path() / "d");
+  EXPECT_EQ(read_text_file(folder.path() / "a"), "old");
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "d"));
+  batch.commit();
+  EXPECT_EQ(read_text_file(folder.path() / "a"), "one");
+  EXPECT_EQ(read_text_file(folder.path() / "sub/b"), "two");
+  EXPECT_EQ(read_text_file(folder.path() / "sub/c"), "linked");
+  EXPECT_EQ(read_text_file(folder.path() / "d"), "linked");
+  EXPECT_EQ(names_in(folder.path()), (std::set<std::string>{"a", "d", "from", "sub"}));
+  EXPECT_EQ(names_in(folder.path() / "sub"), (std::set<std::string>{"b", "c"}));
+}
+
+TEST(FileBatchTest, leaves_nothing_of_what_is_not_committed) {
+  const TemporaryFolder folder;
+  {
+    FileBatch batch;
+    batch.write(folder.path() / "a", bytes_of(std::string_view("one")));
+    batch.write(folder.path() / "b", bytes_of(std::string_view("two")));
+  }
+  EXPECT_EQ(names_in(folder.path()), std::set<std::string>{});
+}
+
+TEST(FileBatchTest, a_name_that_is_refused_leaves_whole_files_and_no_temporaries) {
+  const TemporaryFolder folder;
+  write_file_atomic(folder.path() / "taken/x", "keeps the folder from being replaced");
+  FileBatch batch;
+  batch.write(folder.path() / "a", bytes_of(std::string_view("one")));
+  batch.write(folder.path() / "taken", bytes_of(std::string_view("two")));
+  batch.write(folder.path() / "z", bytes_of(std::string_view("three")));
+  EXPECT_THROW(batch.commit(), Error);
+  EXPECT_EQ(read_text_file(folder.path() / "a"), "one");
+  EXPECT_TRUE(std::filesystem::is_directory(folder.path() / "taken"));
+}
+
+TEST(FileBatchTest, temporaries_go_with_a_batch_that_failed) {
+  const TemporaryFolder folder;
+  write_file_atomic(folder.path() / "taken/x", "keeps the folder from being replaced");
+  {
+    FileBatch batch;
+    batch.write(folder.path() / "taken", bytes_of(std::string_view("two")));
+    batch.write(folder.path() / "z", bytes_of(std::string_view("three")));
+    EXPECT_THROW(batch.commit(), Error);
+  }
+  EXPECT_EQ(names_in(folder.path()), std::set<std::string>{"taken"});
 }
 
 }  // namespace
