@@ -5,7 +5,7 @@
 //
 //   DS_NAME_INPUTS(INPUT)    its inputs: INPUT(slot, width, default), slot being NAME_input
 //   DS_NAME_NUMBERS(NUMBER)  its fixed numbers: NUMBER(slot, default)
-//   NAME_traits              sum of traits.h
+//   DS_TRAITS(NAME, sum)     of traits.h
 //   NAME_children            how many materials it chooses among; one with any has NAME_child alone
 //   NAME_derived             how many numbers it derives from the inputs and the viewer, once for
 //                            all questions; k_most_derived at most
@@ -19,7 +19,6 @@
 #pragma once
 
 #include "tracer/kernels/sampler.h"
-#include "tracer/kernels/traits.h"
 
 enum { k_most_derived = 16 };
 

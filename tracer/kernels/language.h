@@ -16,9 +16,12 @@
 #  define DS_OUT_OF_LINE static __attribute__((noinline))
 #  define DS_GLOBAL __global const
 #  define leading_zeros(x) clz(x)
+/// Traits are the host's (traits.h): a program neither holds nor depends on what there is of them.
+#  define DS_TRAITS(name, sum) enum { name##_has_traits }
 #else
 #  define DS_FN inline
 #  define DS_INLINED inline
 #  define DS_OUT_OF_LINE inline
 #  define DS_GLOBAL const
+#  define DS_TRAITS(name, sum) enum { name##_traits = (sum) }
 #endif

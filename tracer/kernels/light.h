@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What every light answers. A light KIND in lights/KIND.h has
 //
-//   KIND_traits                                   sum of traits.h
+//   DS_TRAITS(KIND, sum)                          of traits.h
 //   LightSample KIND_sample(LightTables t, uint at, real3 from, real2 u)
 //                                                 a way from a surface point to the light
 //   real3 KIND_escape(LightTables t, uint at, real3 direction, real* pdf)
@@ -16,7 +16,6 @@
 #include "tracer/kernels/math.h"
 #include "tracer/kernels/sampler.h"
 #include "tracer/kernels/scene_data.h"
-#include "tracer/kernels/traits.h"
 
 typedef struct {
   DS_GLOBAL float* lights;

@@ -3,14 +3,13 @@
 // a pixel, through its centre and the pinhole. A plane NAME in planes/NAME.h has
 //
 //   NAME_width    numbers a pixel
-//   NAME_traits   sum of plane_traits.h
+//   DS_TRAITS(NAME, sum)   of plane_traits.h
 //   void NAME_at(const HitPoint* h, real* out)   the numbers where something was met; else all are 0
 //
 // The first paragraph of the header's comment is the plane's convention, in the reference and in
 // every manifest.
 #pragma once
 
-#include "tracer/kernels/plane_traits.h"
 #include "tracer/kernels/surface.h"
 
 /// Object id of the model.

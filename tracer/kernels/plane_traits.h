@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the host asks of a plane: NAME_traits in its header is a sum of these.
+// What the host asks of a plane: DS_TRAITS in its header names a sum of these. No program holds this
+// file.
 #pragma once
 
 enum {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What every texture answers. A texture NAME in textures/NAME.h has DS_NAME_INPUTS and
 // DS_NAME_NUMBERS as materials have (slots of inputs count textures, slots of numbers count floats),
-// NAME_traits, a sum of traits.h, and
+// DS_TRAITS(NAME, a sum of traits.h), and
 //
 //   real3 NAME_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const real3* inputs)
 //
@@ -11,7 +11,6 @@
 
 #include "tracer/kernels/math.h"
 #include "tracer/kernels/scene_data.h"
-#include "tracer/kernels/traits.h"
 
 /// Turns lists of inputs and numbers into indices.
 #define DS_INPUT_INDEX(slot, width, default_value) slot,

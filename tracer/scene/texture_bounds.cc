@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/scene/texture_bounds.h"
 
+#include "tracer/kernels/layout.h"
 #include "tracer/scene/type_tables.h"
 
 #include <fmt/format.h>
@@ -65,7 +66,8 @@ Bounds texture_bounds(const Scene& scene, const Texture& texture, const BoundsOf
     return image(scene.images[static_cast<std::size_t>(texture.image)]);
   }
   if (reads_colors(type)) return InputBounds{{0, 0, 0}, {1, 1, 1}};
-  if (type.name == "checkerboard3d") return either(input("texture1"), input("texture2"));
+  if (has_trait(type, kernels::k_trait_chooses))
+    return either(input("texture1"), input("texture2"));
   if (type.name == "mix") return mixed(input("amount"), input("texture1"), input("texture2"));
   if (type.name == "add") return combined(input("texture1"), input("texture2"), std::plus());
   if (type.name == "subtract") return combined(input("texture1"), input("texture2"), std::minus());

@@ -6,7 +6,7 @@
 #include "tracer/kernels/light.h"
 
 enum { constant_infinite_radiance = 0 /* 3 */ };
-enum { constant_infinite_traits = k_trait_beyond };
+DS_TRAITS(constant_infinite, k_trait_beyond);
 
 DS_FN LightSample constant_infinite_sample(LightTables t, uint at, real3 from, real2 u) {
   return no_light();

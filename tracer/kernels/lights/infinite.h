@@ -26,7 +26,7 @@ enum {
   infinite_to_light = 11,        ///< 9: rotation, row-major, world to light space
   k_column_block = 16,           ///< entries of a block: one cache line
 };
-enum { infinite_traits = k_trait_beyond | k_trait_sampled };
+DS_TRAITS(infinite, k_trait_beyond | k_trait_sampled);
 
 /// A direction of light space (+z up) in the image; the middle column looks along +x, columns to
 /// its left towards +y.

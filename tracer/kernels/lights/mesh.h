@@ -12,7 +12,7 @@ enum {
   mesh_cumulative = 5,  ///< offset in tables: cumulative shares of the area
   mesh_triangles = 6    ///< offset in tables: rows of triangles, bits of unsigned numbers
 };
-enum { mesh_traits = k_trait_sampled | k_trait_small };
+DS_TRAITS(mesh, k_trait_sampled | k_trait_small);
 
 /// Barycentric weights of a uniform point: Heitz 2019, "A Low-Distortion Map Between Triangle and
 /// Square".

@@ -5,7 +5,7 @@
 #include "tracer/kernels/light.h"
 
 enum { point_intensity = 0 /* 3: W/sr */, point_position = 3 /* 3: metres */ };
-enum { point_traits = k_trait_sampled | k_trait_small };
+DS_TRAITS(point, k_trait_sampled | k_trait_small);
 
 /// Inverse square law. Closer than 1e-10 m the distance counts as 1e-10 m.
 DS_FN LightSample point_sample(LightTables t, uint at, real3 from, real2 u) {

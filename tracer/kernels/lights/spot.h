@@ -13,7 +13,7 @@ enum {
   spot_cos_total = 9,    ///< cosine of the outer angle
   spot_cos_falloff = 10  ///< cosine of the inner angle, > cos_total
 };
-enum { spot_traits = k_trait_sampled | k_trait_small };
+DS_TRAITS(spot, k_trait_sampled | k_trait_small);
 
 DS_FN LightSample spot_sample(LightTables t, uint at, real3 from, real2 u) {
   DS_GLOBAL float* p = t.lights + at;

@@ -14,7 +14,7 @@ enum {
   sun_sin2 = 13,  ///< squared sine of the angular radius
   sun_pdf = 14    ///< 1 / solid angle
 };
-enum { sun_traits = k_trait_beyond | k_trait_sampled | k_trait_small };
+DS_TRAITS(sun, k_trait_beyond | k_trait_sampled | k_trait_small);
 
 DS_FN LightSample sun_sample(LightTables t, uint at, real3 from, real2 u) {
   DS_GLOBAL float* p = t.lights + at;

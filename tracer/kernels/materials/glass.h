@@ -13,7 +13,8 @@
   INPUT(glass_exteriorior, 1, 1.0f)
 #define DS_GLASS_NUMBERS(NUMBER)
 enum { DS_GLASS_INPUTS(DS_SLOT) DS_GLASS_NUMBERS(DS_NUMBER_SLOT) glass_end, glass_derived = 0 };
-enum { glass_traits = k_trait_lobes | k_trait_casts_caustics, glass_children = 0 };
+enum { glass_children = 0 };
+DS_TRAITS(glass, k_trait_lobes | k_trait_casts_caustics);
 
 DS_FN void glass_prepare(const real* p, Viewer viewer, real* derived) {}
 

@@ -25,10 +25,8 @@
   INPUT(glossy2_index, 1, 0.0f)
 #define DS_GLOSSY2_NUMBERS(NUMBER) NUMBER(glossy2_doublesided, 0.0f)
 enum { DS_GLOSSY2_INPUTS(DS_SLOT) DS_GLOSSY2_NUMBERS(DS_NUMBER_SLOT) glossy2_end };
-enum {
-  glossy2_traits = k_trait_lobes | k_trait_casts_caustics | k_trait_receives_caustics,
-  glossy2_children = 0
-};
+enum { glossy2_children = 0 };
+DS_TRAITS(glossy2, k_trait_lobes | k_trait_casts_caustics | k_trait_receives_caustics);
 /// What is derived: the parts of a Coat, then what the coat does to light for the viewer.
 enum {
   glossy2_alpha,

@@ -7,7 +7,8 @@
 #define DS_MATTE_INPUTS(INPUT) INPUT(matte_kd, 3, 0.75f)
 #define DS_MATTE_NUMBERS(NUMBER)
 enum { DS_MATTE_INPUTS(DS_SLOT) DS_MATTE_NUMBERS(DS_NUMBER_SLOT) matte_end, matte_derived = 0 };
-enum { matte_traits = k_trait_receives_caustics, matte_children = 0 };
+enum { matte_children = 0 };
+DS_TRAITS(matte, k_trait_receives_caustics);
 
 DS_FN void matte_prepare(const real* p, Viewer viewer, real* derived) {}
 

@@ -14,7 +14,8 @@
   INPUT(metal2_vroughness, 1, 0.1f)
 #define DS_METAL2_NUMBERS(NUMBER)
 enum { DS_METAL2_INPUTS(DS_SLOT) DS_METAL2_NUMBERS(DS_NUMBER_SLOT) metal2_end };
-enum { metal2_traits = k_trait_lobes | k_trait_casts_caustics, metal2_children = 0 };
+enum { metal2_children = 0 };
+DS_TRAITS(metal2, k_trait_lobes | k_trait_casts_caustics);
 /// What is derived; see Rescattering.
 enum {
   metal2_alpha,

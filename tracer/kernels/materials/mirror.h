@@ -7,7 +7,8 @@
 #define DS_MIRROR_INPUTS(INPUT) INPUT(mirror_kr, 3, 1.0f)
 #define DS_MIRROR_NUMBERS(NUMBER)
 enum { DS_MIRROR_INPUTS(DS_SLOT) DS_MIRROR_NUMBERS(DS_NUMBER_SLOT) mirror_end, mirror_derived = 0 };
-enum { mirror_traits = k_trait_casts_caustics, mirror_children = 0 };
+enum { mirror_children = 0 };
+DS_TRAITS(mirror, k_trait_casts_caustics);
 
 DS_FN void mirror_prepare(const real* p, Viewer viewer, real* derived) {}
 

@@ -8,7 +8,8 @@
 #define DS_MIX_INPUTS(INPUT) INPUT(mix_amount, 1, 0.5f)
 #define DS_MIX_NUMBERS(NUMBER)
 enum { DS_MIX_INPUTS(DS_SLOT) DS_MIX_NUMBERS(DS_NUMBER_SLOT) mix_end };
-enum { mix_traits = k_trait_lobes, mix_children = 2 };
+enum { mix_children = 2 };
+DS_TRAITS(mix, k_trait_lobes);
 
 /// `*choice` is used up where `here`, and stretched back to [0, 1).
 DS_FN natural mix_child(const real* p, mask outside, mask here, real* choice) {

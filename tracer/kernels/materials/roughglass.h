@@ -21,7 +21,7 @@
 #define DS_ROUGHGLASS_NUMBERS(NUMBER)
 enum { DS_ROUGHGLASS_INPUTS(DS_SLOT) DS_ROUGHGLASS_NUMBERS(DS_NUMBER_SLOT) roughglass_end };
 enum { roughglass_derived = 0, roughglass_children = 0 };
-enum { roughglass_traits = k_trait_lobes | k_trait_casts_caustics | k_trait_transmits };
+DS_TRAITS(roughglass, k_trait_lobes | k_trait_casts_caustics | k_trait_transmits);
 
 DS_FN void roughglass_prepare(const real* p, Viewer viewer, real* derived) {}
 

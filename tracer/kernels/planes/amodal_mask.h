@@ -5,7 +5,8 @@
 
 #include "tracer/kernels/plane.h"
 
-enum { amodal_mask_width = 1, amodal_mask_traits = k_plane_png_share | k_plane_alone };
+enum { amodal_mask_width = 1 };
+DS_TRAITS(amodal_mask, k_plane_png_share | k_plane_alone);
 
 DS_FN void amodal_mask_at(const HitPoint* h, real* out) {
   out[0] = choose(h->object == k_model_object, (real)(1.0f), (real)(0.0f));

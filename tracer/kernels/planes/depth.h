@@ -5,7 +5,8 @@
 
 #include "tracer/kernels/plane.h"
 
-enum { depth_width = 1, depth_traits = k_plane_exr | k_plane_png_milli };
+enum { depth_width = 1 };
+DS_TRAITS(depth, k_plane_exr | k_plane_png_milli);
 
 DS_FN void depth_at(const HitPoint* h, real* out) {
   out[0] = h->depth;

@@ -5,7 +5,8 @@
 
 #include "tracer/kernels/plane.h"
 
-enum { distance_width = 1, distance_traits = k_plane_exr | k_plane_png_milli };
+enum { distance_width = 1 };
+DS_TRAITS(distance, k_plane_exr | k_plane_png_milli);
 
 DS_FN void distance_at(const HitPoint* h, real* out) {
   out[0] = h->distance;

@@ -5,10 +5,8 @@
 
 #include "tracer/kernels/plane.h"
 
-enum {
-  geometry_normal_width = 3,
-  geometry_normal_traits = k_plane_surface | k_plane_exr | k_plane_png_signed
-};
+enum { geometry_normal_width = 3 };
+DS_TRAITS(geometry_normal, k_plane_surface | k_plane_exr | k_plane_png_signed);
 
 DS_FN void geometry_normal_at(const HitPoint* h, real* out) {
   put_plane3(out, h->surface.normal);

@@ -5,7 +5,8 @@
 
 #include "tracer/kernels/plane.h"
 
-enum { mask_width = 1, mask_traits = k_plane_png_share };
+enum { mask_width = 1 };
+DS_TRAITS(mask, k_plane_png_share);
 
 DS_FN void mask_at(const HitPoint* h, real* out) {
   out[0] = choose(h->object == k_model_object, (real)(1.0f), (real)(0.0f));

@@ -5,10 +5,8 @@
 
 #include "tracer/kernels/plane.h"
 
-enum {
-  material_id_width = 1,
-  material_id_traits = k_plane_material_ids | k_plane_words | k_plane_png_words
-};
+enum { material_id_width = 1 };
+DS_TRAITS(material_id, k_plane_material_ids | k_plane_words | k_plane_png_words);
 
 DS_FN void material_id_at(const HitPoint* h, real* out) {
   out[0] = real_of(h->material_id);

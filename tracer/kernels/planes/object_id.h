@@ -5,10 +5,8 @@
 
 #include "tracer/kernels/plane.h"
 
-enum {
-  object_id_width = 1,
-  object_id_traits = k_plane_objects | k_plane_words | k_plane_png_words
-};
+enum { object_id_width = 1 };
+DS_TRAITS(object_id, k_plane_objects | k_plane_words | k_plane_png_words);
 
 DS_FN void object_id_at(const HitPoint* h, real* out) {
   out[0] = real_of(h->object);

@@ -4,7 +4,8 @@
 
 #include "tracer/kernels/plane.h"
 
-enum { position_width = 3, position_traits = k_plane_surface | k_plane_exr };
+enum { position_width = 3 };
+DS_TRAITS(position, k_plane_surface | k_plane_exr);
 
 DS_FN void position_at(const HitPoint* h, real* out) {
   put_plane3(out, h->surface.position);

@@ -5,10 +5,8 @@
 
 #include "tracer/kernels/plane.h"
 
-enum {
-  shading_normal_width = 3,
-  shading_normal_traits = k_plane_surface | k_plane_normals | k_plane_exr | k_plane_png_signed
-};
+enum { shading_normal_width = 3 };
+DS_TRAITS(shading_normal, k_plane_surface | k_plane_normals | k_plane_exr | k_plane_png_signed);
 
 DS_FN void shading_normal_at(const HitPoint* h, real* out) {
   put_plane3(out, h->surface.shading);

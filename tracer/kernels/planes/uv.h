@@ -4,7 +4,8 @@
 
 #include "tracer/kernels/plane.h"
 
-enum { uv_width = 2, uv_traits = k_plane_surface | k_plane_uvs | k_plane_exr };
+enum { uv_width = 2 };
+DS_TRAITS(uv, k_plane_surface | k_plane_uvs | k_plane_exr);
 
 DS_FN void uv_at(const HitPoint* h, real* out) {
   out[0] = h->surface.u;

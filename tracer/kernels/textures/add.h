@@ -6,7 +6,8 @@
 
 #define DS_ADD_INPUTS(INPUT) INPUT(add_texture1, 3, 1.0f) INPUT(add_texture2, 3, 1.0f)
 #define DS_ADD_NUMBERS(NUMBER)
-enum { DS_ADD_INPUTS(DS_INPUT_INDEX) add_inputs, add_traits = 0 };
+enum { DS_ADD_INPUTS(DS_INPUT_INDEX) add_inputs };
+DS_TRAITS(add, 0);
 
 DS_FN real3 add_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const real3* inputs) {
   return add(inputs[add_texture1], inputs[add_texture2]);

@@ -7,10 +7,8 @@
 #define DS_CHECKERBOARD3D_INPUTS(INPUT) \
   INPUT(checkerboard3d_texture1, 3, 1.0f) INPUT(checkerboard3d_texture2, 3, 0.0f)
 #define DS_CHECKERBOARD3D_NUMBERS(NUMBER)
-enum {
-  DS_CHECKERBOARD3D_INPUTS(DS_INPUT_INDEX) checkerboard3d_inputs,
-  checkerboard3d_traits = k_trait_position
-};
+enum { DS_CHECKERBOARD3D_INPUTS(DS_INPUT_INDEX) checkerboard3d_inputs };
+DS_TRAITS(checkerboard3d, k_trait_position | k_trait_chooses);
 
 DS_FN real3 checkerboard3d_evaluate(TexturePoint at, DS_GLOBAL float* numbers,
                                     const real3* inputs) {

@@ -9,7 +9,8 @@
 #define DS_FBM_INPUTS(INPUT)
 #define DS_FBM_NUMBERS(NUMBER) NUMBER(fbm_octaves, 8.0f) NUMBER(fbm_roughness, 0.5f)
 enum { DS_FBM_NUMBERS(DS_NUMBER_INDEX) fbm_numbers };
-enum { fbm_inputs = 0, fbm_traits = k_trait_position };
+enum { fbm_inputs = 0 };
+DS_TRAITS(fbm, k_trait_position);
 
 DS_FN real3 fbm_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const real3* inputs) {
   return splat(

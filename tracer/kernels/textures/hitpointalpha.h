@@ -8,7 +8,8 @@
 #define DS_HITPOINTALPHA_NUMBERS(NUMBER)
 /// Behind the numbers: where the rows of colours start in the tables.
 enum { hitpointalpha_offset };
-enum { hitpointalpha_inputs = 0, hitpointalpha_traits = k_trait_colors };
+enum { hitpointalpha_inputs = 0 };
+DS_TRAITS(hitpointalpha, k_trait_colors);
 
 DS_FN real3 hitpointalpha_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const real3* inputs) {
   return splat(hit_color(at, numbers[hitpointalpha_offset], 3u));

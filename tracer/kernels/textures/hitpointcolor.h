@@ -8,7 +8,8 @@
 #define DS_HITPOINTCOLOR_NUMBERS(NUMBER)
 /// Behind the numbers: where the rows of colours start in the tables.
 enum { hitpointcolor_offset };
-enum { hitpointcolor_inputs = 0, hitpointcolor_traits = k_trait_colors };
+enum { hitpointcolor_inputs = 0 };
+DS_TRAITS(hitpointcolor, k_trait_colors);
 
 DS_FN real3 hitpointcolor_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const real3* inputs) {
   const float offset = numbers[hitpointcolor_offset];

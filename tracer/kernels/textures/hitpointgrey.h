@@ -9,7 +9,8 @@
 #define DS_HITPOINTGREY_NUMBERS(NUMBER) NUMBER(hitpointgrey_channel, -1.0f)
 /// Behind the numbers: where the rows of colours start in the tables.
 enum { DS_HITPOINTGREY_NUMBERS(DS_NUMBER_INDEX) hitpointgrey_offset };
-enum { hitpointgrey_inputs = 0, hitpointgrey_traits = k_trait_colors };
+enum { hitpointgrey_inputs = 0 };
+DS_TRAITS(hitpointgrey, k_trait_colors);
 
 DS_FN real3 hitpointgrey_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const real3* inputs) {
   const float offset = numbers[hitpointgrey_offset];

@@ -7,7 +7,8 @@
 
 #define DS_IMAGEMAP_INPUTS(INPUT)
 #define DS_IMAGEMAP_NUMBERS(NUMBER)
-enum { imagemap_inputs = 0, imagemap_traits = k_trait_uv };
+enum { imagemap_inputs = 0 };
+DS_TRAITS(imagemap, k_trait_uv);
 
 /// The words behind an imagemap instruction.
 enum {

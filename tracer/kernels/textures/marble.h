@@ -12,7 +12,8 @@
   NUMBER(marble_octaves, 8.0f)    \
   NUMBER(marble_roughness, 0.5f) NUMBER(marble_scale, 1.0f) NUMBER(marble_variation, 0.2f)
 enum { DS_MARBLE_NUMBERS(DS_NUMBER_INDEX) marble_numbers };
-enum { marble_inputs = 0, marble_traits = k_trait_position };
+enum { marble_inputs = 0 };
+DS_TRAITS(marble, k_trait_position);
 
 /// The stone's colour at t in [0, 1]: pale, with a bluish vein around 0.92 and a faint grey one
 /// around 0.42.

@@ -8,7 +8,8 @@
   INPUT(mix_texture_amount, 1, 0.5f) \
   INPUT(mix_texture_texture1, 3, 0.0f) INPUT(mix_texture_texture2, 3, 1.0f)
 #define DS_MIX_TEXTURE_NUMBERS(NUMBER)
-enum { DS_MIX_TEXTURE_INPUTS(DS_INPUT_INDEX) mix_texture_inputs, mix_texture_traits = 0 };
+enum { DS_MIX_TEXTURE_INPUTS(DS_INPUT_INDEX) mix_texture_inputs };
+DS_TRAITS(mix_texture, 0);
 
 DS_FN real3 mix_texture_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const real3* inputs) {
   return lerp3(inputs[mix_texture_texture1], inputs[mix_texture_texture2],

@@ -7,7 +7,8 @@
 #define DS_SUBTRACT_INPUTS(INPUT) \
   INPUT(subtract_texture1, 3, 1.0f) INPUT(subtract_texture2, 3, 1.0f)
 #define DS_SUBTRACT_NUMBERS(NUMBER)
-enum { DS_SUBTRACT_INPUTS(DS_INPUT_INDEX) subtract_inputs, subtract_traits = 0 };
+enum { DS_SUBTRACT_INPUTS(DS_INPUT_INDEX) subtract_inputs };
+DS_TRAITS(subtract, 0);
 
 DS_FN real3 subtract_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const real3* inputs) {
   return sub(inputs[subtract_texture1], inputs[subtract_texture2]);
