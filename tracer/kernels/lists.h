@@ -20,6 +20,8 @@
   X("checkerboard3d", checkerboard3d, CHECKERBOARD3D) \
   X("marble", marble, MARBLE)                         \
   X("fbm", fbm, FBM)                                  \
+  X("checkerboard2d", checkerboard2d, CHECKERBOARD2D) \
+  X("wrinkled", wrinkled, WRINKLED)                   \
   X("scale", scale, SCALE)                            \
   X("mix", mix_texture, MIX_TEXTURE)                  \
   X("add", add, ADD)                                  \

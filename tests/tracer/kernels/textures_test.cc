@@ -244,6 +244,22 @@ TEST(Checkerboard, KnownCells) {
   EXPECT_TRUE(even(-0.0f, 0, 0));
 }
 
+TEST(Checkerboard, KnownCellsOfUvs) {
+  const real3 colours[2] = {vec(1, 1, 1), vec(0, 0, 0)};
+  const auto even = [&](float u, float v) {
+    TexturePoint p = at(9.5f, 3.5f, 0.5f);  // the place does not matter
+    p.u = u;
+    p.v = v;
+    return checkerboard2d_evaluate(p, nullptr, colours).x == 1;
+  };
+  EXPECT_TRUE(even(0.5f, 0.5f));
+  EXPECT_FALSE(even(1.5f, 0.5f));
+  EXPECT_FALSE(even(0.5f, 7.5f));
+  EXPECT_TRUE(even(1.5f, 1.5f));
+  EXPECT_FALSE(even(-0.5f, 0.5f));
+  EXPECT_TRUE(even(-0.5f, -3.5f));
+}
+
 TEST(Checkerboard, TheMappingIsApplied) {
   Scene unused;
   const auto value = [](Vec3 p) {
@@ -345,6 +361,23 @@ TEST(Fbm, IsNoiseForOneOctave) {
   const float numbers[] = {1, 0.5f};
   const real3 p = vec(1.3f, -2.4f, 0.8f);
   EXPECT_EQ(fbm_evaluate(at(p.x, p.y, p.z), numbers, nullptr).x, gradient_noise(p));
+}
+
+TEST(Wrinkled, IsTheSumOfTheSizesOfItsOctaves) {
+  const float one[] = {1, 0.5f}, three[] = {3, 0.25f};
+  bool below = false;
+  for (int i = 0; i < 200; ++i) {
+    const real3 p = vec(1.3f + 0.37f * static_cast<float>(i), -2.4f, 0.8f);
+    const TexturePoint point = at(p.x, p.y, p.z);
+    below = below || gradient_noise(p) < 0;
+    EXPECT_EQ(wrinkled_evaluate(point, one, nullptr).x, std::fabs(gradient_noise(p)));
+    const real3 twice = scale(p, 1.99f), thrice = scale(twice, 1.99f);
+    EXPECT_NEAR(wrinkled_evaluate(point, three, nullptr).x,
+                std::fabs(gradient_noise(p)) + 0.25f * std::fabs(gradient_noise(twice)) +
+                    0.0625f * std::fabs(gradient_noise(thrice)),
+                1e-6);
+  }
+  EXPECT_TRUE(below);
 }
 
 /// A 3 x 2 image of red values 0 .. 5, top row first.
