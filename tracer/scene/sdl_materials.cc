@@ -119,13 +119,9 @@ const std::vector<Finish>& finishes() {
 }
 
 /// Luminance by which LuxCore divides where a light is normalised; nothing, with a finding, where
-/// it is not known.
+/// it is 0.
 std::optional<double> emission_luminance(const SdlNode& node, std::string_view property,
                                          const TextureRef& emission) {
-  if (emission.texture >= 0) {
-    node.error(property, "normalising by the colour of a textured emission is not supported yet");
-    return std::nullopt;
-  }
   const double y = portable::luminance(to_double(emission.constant));
   if (y > 0) return y;
   node.error(property, "wanted an emission colour above 0 to normalise by");
@@ -147,7 +143,13 @@ void read_emission(const SdlNode& node, Material& material, int index) {
   const bool normalize = node.flag("emission.normalizebycolor");
   const bool normalize_gain = node.flag("emission.gain.normalizebycolor");
   if (!emission) return;
-  if (emission->texture < 0 && emission->constant == Vec3{}) return;
+  if (emission->texture >= 0) {
+    node.error("emission",
+               "a texture that emits is not supported yet, wanted a number or a colour, found {}",
+               node.text("emission").value_or(""));
+    return;
+  }
+  if (emission->constant == Vec3{}) return;
 
   const bool by_power = power > 0 && efficiency > 0;
   const char* cause = by_power ? "emission.power" : "emission.gain.normalizebycolor";
@@ -189,7 +191,8 @@ void read_material_node(SdlNode node) {
 std::vector<SdlParameter> emission_parameters() {
   constexpr NumberRange k_not_negative{.least = 0};
   return concatenated(
-      {{{"emission", SdlType::color_input, "0", "radiance; what emits is a light", k_not_negative},
+      {{{"emission", SdlType::color_input, "0",
+         "radiance; what emits is a light. A texture must be a constant", k_not_negative},
         {"emission.gain", SdlType::color, "1 1 1", "factor on emission", k_not_negative},
         {"emission.gain.normalizebycolor", SdlType::flag, "0",
          "divide by the emission's luminance"}},

@@ -274,13 +274,12 @@ TEST_F(KeysOfExtrasTest, ColoursCountWhereTheMaterialReadsThem) {
     EXPECT_EQ(moved_by((texture + "scene.materials.a.kd = t\n").c_str(), k_plain, k_recoloured),
               (Moved{true, false, true}))
         << type;
-    // Below another texture, as a part of a mix, and as light.
+    // Below another texture, and as a part of a mix.
     for (const char* user : {"scene.textures.s.type = scale\nscene.textures.s.texture1 = t\n"
                              "scene.materials.a.kd = s\n",
                              "scene.materials.b.kd = t\nscene.materials.c.kd = 0.1\n"
                              "scene.materials.a.type = mix\nscene.materials.a.material1 = b\n"
-                             "scene.materials.a.material2 = c\n",
-                             "scene.materials.a.emission = t\n"})
+                             "scene.materials.a.material2 = c\n"})
       EXPECT_TRUE(moved_by((texture + user).c_str(), k_plain, k_recoloured).render) << type << user;
     // A texture that is there and that no material uses.
     EXPECT_FALSE(moved_by((texture + plain).c_str(), k_plain, k_recoloured).render) << type;

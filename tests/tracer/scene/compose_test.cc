@@ -32,16 +32,17 @@ Scene environment_of(const SdlFolder& folder) {
 
 Scene material_of(const SdlFolder& folder) {
   folder.write("skin.png", "another one");
-  return folder.material(std::string(k_two_textures) +
-                         "scene.textures.picture.file = skin.png\n"
-                         "scene.materials.base.kd = tinted\n"
-                         "scene.materials.coat.type = mirror\n"
-                         "scene.materials.coat.kr = picture\n"
-                         "scene.materials.body.type = mix\n"
-                         "scene.materials.body.material1 = base\n"
-                         "scene.materials.body.material2 = coat\n"
-                         "scene.materials.body.amount = fine\n"
-                         "scene.materials.body.emission = tinted\n");
+  Scene material = folder.material(std::string(k_two_textures) +
+                                   "scene.textures.picture.file = skin.png\n"
+                                   "scene.materials.base.kd = tinted\n"
+                                   "scene.materials.coat.type = mirror\n"
+                                   "scene.materials.coat.kr = picture\n"
+                                   "scene.materials.body.type = mix\n"
+                                   "scene.materials.body.material1 = base\n"
+                                   "scene.materials.body.material2 = coat\n"
+                                   "scene.materials.body.amount = fine\n");
+  material.materials.back().emission = material.materials.front().inputs.front();
+  return material;
 }
 
 Mesh triangle() {

@@ -99,6 +99,10 @@ INSTANTIATE_TEST_SUITE_P(
              "m.scn:2: scene.materials.a.emission.power: needs the area of an object, and a "
              "material file has none: "
              "use emission.gain"},
+        Case{"scene.textures.t.type = hitpointcolor\nscene.materials.a.emission = t\n"
+             "scene.materials.a.emission.gain.normalizebycolor = 1",
+             "m.scn:2: scene.materials.a.emission: a texture that emits is not supported yet, "
+             "wanted a number or a colour, found t"},
         Case{"scene.textures.t.file = no.png\nscene.materials.a.kd = t",
              "m.scn:1: scene.textures.t.file: file no.png does not exist"},
         Case{"scene.textures.t.type = marble\nscene.materials.a.kd = t",

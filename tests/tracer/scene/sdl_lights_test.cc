@@ -229,18 +229,5 @@ TEST(EmissionByPower, EachObjectHasItsOwnArea) {
   EXPECT_NEAR(radiance(1), 8 / (k_pi * 4), 1e-6);
 }
 
-TEST(EmissionByTexture, AGainBecomesAScaleTexture) {
-  const SdlFolder folder;
-  const Scene scene = folder.material(
-      "scene.textures.t.type = fbm\nscene.textures.t.mapping.type = globalmapping3d\n" +
-      std::string(k_matte_body) +
-      "scene.materials.body.emission = t\nscene.materials.body.emission.gain = 2 3 4\n");
-  const Material& body = scene.materials.back();
-  ASSERT_GE(body.emission.texture, 0);
-  const Texture& product = scene.textures.at(static_cast<std::size_t>(body.emission.texture));
-  EXPECT_EQ(product.name, "body.emission");
-  EXPECT_EQ(product.inputs.at(1).constant, (Vec3{2, 3, 4}));
-}
-
 }  // namespace
 }  // namespace ds
