@@ -5,8 +5,11 @@
 #include "tracer/render/exr_header.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <optional>
 #include <string_view>
+#include <system_error>
 
 namespace ds {
 namespace {
@@ -33,7 +36,12 @@ class View {
     return byte(at) | byte(at + 1) << 8U | byte(at + 2) << 16U;
   }
   std::uint32_t big32(std::size_t at) const { return big16(at) << 16U | big16(at + 2); }
-  std::size_t find(std::string_view wanted) const { return text_.find(wanted); }
+  std::size_t find(std::string_view wanted, std::size_t from = 0) const {
+    return text_.find(wanted, from);
+  }
+  std::string_view text(std::size_t begin, std::size_t end) const {
+    return text_.substr(begin, end - begin);
+  }
   std::size_t rfind(std::string_view wanted) const { return text_.rfind(wanted); }
 
  private:
@@ -107,6 +115,37 @@ Size webp_size(const View& view) {
   return {view.little24(26) & 0x3fffU, view.little24(28) & 0x3fffU};
 }
 
+/// "-Y 512 +X 1024": how many lines, and how many pixels each has; 0 where it is no such line.
+Size radiance_size(std::string_view line) {
+  std::array<std::uint64_t, 2> numbers{};
+  for (std::uint64_t& number : numbers) {
+    line.remove_prefix(std::min(line.find_first_of("XY"), line.size()));
+    line.remove_prefix(std::min(line.find_first_of("0123456789"), line.size()));
+    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), number);
+    if (error != std::errc()) return {};
+    line.remove_prefix(static_cast<std::size_t>(end - line.data()));
+  }
+  return {numbers[1], numbers[0]};
+}
+
+/// Radiance's run-length encoding of before 1991 (Ward, "Real Pixels", Graphics Gems II): a pixel 1 1
+/// 1 n repeats the one before. OpenImageIO takes it for pixels as they stand, of which too few follow.
+bool has_old_runs(const View& view) {
+  const std::size_t head = view.find("\n\n");
+  if (head == std::string_view::npos) return false;
+  const std::size_t end = view.find("\n", head + 2);
+  if (end == std::string_view::npos) return false;
+  const Size size = radiance_size(view.text(head + 2, end));
+  const std::size_t pixels = end + 1;
+  const bool new_runs =
+      view.byte(pixels) == 2 && view.byte(pixels + 1) == 2 && view.big16(pixels + 2) == size.width;
+  const std::uint64_t whole = (view.size() - pixels) / 4;
+  if (new_runs || size.width == 0 || whole / size.width >= size.height) return false;
+  for (std::size_t at = pixels; at + 4 <= view.size(); at += 4)
+    if (view.byte(at) == 1 && view.byte(at + 1) == 1 && view.byte(at + 2) == 1) return true;
+  return false;
+}
+
 }  // namespace
 
 std::string check_image_claims(std::span<const std::byte> bytes, const std::string& name) {
@@ -128,6 +167,12 @@ std::string check_image_claims(std::span<const std::byte> bytes, const std::stri
   if (format == "openexr") read_exr_header(bytes, name);
   if (format == "hdr" && view.find("FORMAT=32-bit_rle_xyze") < view.find("\n\n"))
     fail(ErrorKind::asset, "{}: wanted colours of red, green and blue, found XYZ", name);
+  if (format == "hdr" && has_old_runs(view))
+    fail(
+        ErrorKind::asset,
+        "{}: its pixels are in Radiance's old run-length encoding, which is not supported: ra_xyze "
+        "-r, of Radiance, writes it anew",
+        name);
   if (format == "png") check(png_size(view));
   if (format == "webp") check(webp_size(view));
   if (format == "jpeg") {

@@ -24,6 +24,7 @@ using samples::ExrFile;
 using testing::Each;
 using testing::FloatNear;
 using testing::HasSubstr;
+using testing::Not;
 
 class Meaning : public testing::Test {
  protected:
@@ -286,6 +287,15 @@ TEST_F(Meaning, ACutJpegIsAnError) {
   const std::string whole = jpeg(1);
   EXPECT_THAT(error_of(whole.substr(0, whole.size() / 2), "a.jpg"), HasSubstr("cut off"));
   EXPECT_THAT(error_of(whole.substr(0, whole.size() - 2), "a.jpg"), HasSubstr("cut off"));
+}
+
+TEST_F(Meaning, RadiancesOldRunsAreNamed) {
+  // Old runs: 1 1 1 3 repeats the pixel before. As pixels that stand as they are there would be four.
+  const std::string old = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n\x80\x80\x80\x81";
+  EXPECT_THAT(error_of(old + "\x01\x01\x01\x03", "a.hdr"),
+              HasSubstr("a.hdr: its pixels are in Radiance's old run-length encoding"));
+  EXPECT_THAT(error_of(old, "a.hdr"), Not(HasSubstr("old run-length"))) << "cut off";
+  loaded(old + "\x01\x01\x01\x03\x80\x80\x80\x81\x80\x80\x80\x81", "whole.hdr");
 }
 
 TEST_F(Meaning, PromisesAreSetAgainstTheFile) {
