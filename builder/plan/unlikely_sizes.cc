@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 namespace ds {
 namespace {
@@ -78,11 +79,23 @@ double distance_to(const ImageLengths& image) {
   return length(middle_of(image.model) - image.camera.position);
 }
 
+/// How much of a length the picture shows at the model's distance.
+double shown_m(const ImageLengths& image) {
+  const auto [half_width, half_height] = half_picture(image);
+  return distance_to(image) * 2 * std::max(half_width, half_height);
+}
+
+/// Angles of view in radians are below pi. One so narrow is for what is far.
+bool is_narrow(const ImageLengths& image) {
+  constexpr double k_parts = 4;
+  return image.camera.fov_deg < std::numbers::pi &&
+         longest(side_of(image.model)) > k_parts * shown_m(image);
+}
+
 bool is_tiny(const ImageLengths& image) {
   constexpr double k_pixels = 2;
-  const auto [half_width, half_height] = half_picture(image);
-  const double pixels = std::max(image.width, image.height) * longest(side_of(image.model)) /
-                        (distance_to(image) * 2 * std::max(half_width, half_height));
+  const double pixels =
+      std::max(image.width, image.height) * longest(side_of(image.model)) / shown_m(image);
   return pixels < k_pixels;
 }
 
@@ -138,6 +151,12 @@ std::string describe(UnlikelySize what, const ImageLengths& image, const Recipe&
           "the model is far larger than its environment: {:.4g} m long, all objects there {:.4g} "
           "m; {}",
           model_m, image.environment_m, unit_of_model(recipe));
+    case UnlikelySize::view_narrow:
+      return fmt::format(
+          "the picture shows {:.2g} m of a model of {:.4g} m: is camera.fov_deg = {:g} in radians? "
+          "it "
+          "is in degrees, {:.4g} of them",
+          shown_m(image), model_m, camera.fov_deg, camera.fov_deg * 180 / std::numbers::pi);
     case UnlikelySize::out_of_view:
       return fmt::format(
           "nothing of the model is in front of the camera: it is {:.4g} m long, its middle {:.4g} "
@@ -240,6 +259,7 @@ std::optional<UnlikelySize> unlikely_place(const ImageLengths& image) {
   if (is_camera_inside(image)) return UnlikelySize::camera_inside;
   if (image.environment_m > 0 && longest(side_of(image.model)) > k_larger * image.environment_m)
     return UnlikelySize::model_large;
+  if (is_narrow(image)) return UnlikelySize::view_narrow;
   if (is_out_of_view(image)) return UnlikelySize::out_of_view;
   if (is_tiny(image)) return UnlikelySize::model_tiny;
   return std::nullopt;

@@ -25,6 +25,7 @@ struct ImageLengths {
 enum class UnlikelySize {
   camera_inside,  ///< the camera stands inside the model's box
   model_large,    ///< the model is over 4 times as long as all that the environment holds
+  view_narrow,    ///< the angle of view is below pi and shows under a quarter of the model's length
   out_of_view,    ///< the model's box is wholly outside of what the camera sees
   model_tiny,     ///< the model is smaller than two pixels
   lens_wide,      ///< the lens is wider than the camera's distance, or than a model it is near to

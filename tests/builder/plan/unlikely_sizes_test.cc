@@ -69,6 +69,19 @@ TEST(UnlikelySizes, ACameraInMillimetres) {
   EXPECT_EQ(unlikely_place(image), UnlikelySize::camera_inside);
 }
 
+TEST(UnlikelySizes, AnAngleOfViewInRadians) {
+  ImageLengths image = usual();
+  image.camera.fov_deg = 0.855;
+  EXPECT_EQ(unlikely_place(image), UnlikelySize::view_narrow);
+  image.camera.position = {12, 0, 0};  // which shows it whole
+  EXPECT_EQ(unlikely_place(image), std::nullopt);
+  image.camera.position = {6, 0, 0};  // a part of it, as is meant in a closeup
+  EXPECT_EQ(unlikely_place(image), std::nullopt);
+  image = usual();
+  image.camera.fov_deg = 4;
+  EXPECT_EQ(unlikely_place(image), std::nullopt);
+}
+
 TEST(UnlikelySizes, AModelOffThePicture) {
   for (const Vec3d off : {Vec3d{0, 0, -57.4}, Vec3d{0, 30, 0}, Vec3d{5, 0, 0}}) {
     ImageLengths image = usual();
@@ -123,6 +136,9 @@ TEST_F(UnlikelySizesTest, ALineForEachKindHasTheFiguresAndTheKey) {
   EXPECT_THAT(lines_with({"camera.lens_radius_m=0.0025", "camera.focus=distance",
                           "camera.focus_distance_m=400"}),
               ElementsAre(HasSubstr("is camera.focus_distance_m = 400 in millimetres?")));
+  EXPECT_THAT(lines_with({"camera.fov_deg=0.855"}),
+              ElementsAre(HasSubstr("is camera.fov_deg = 0.855 in radians? it is in degrees, 48.99 "
+                                    "of them")));
   EXPECT_THAT(lines_with({"models.ground_z_m=-57"}),
               ElementsAre(HasSubstr("nothing of the model is in front of the camera")));
   // One cause is one line: the lens is right for a model of 0.16 m.
