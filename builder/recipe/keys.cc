@@ -220,9 +220,12 @@ constexpr std::array k_keys = {
         "outputs.planes", files, text_list, "", "[]", k_any, "", "",
         "Further planes, each a file VIEW.NAME.png or .exr: NAME, or NAME:ENCODING where not the "
         "usual one; see Planes"},
-    KeySpec{"outputs.tone_map", files, choice, "", "\"environment\"", k_any,
-            R"("environment" | "linear" | "reinhard02" | "autolinear")", "",
-            "How radiance becomes 8 bits: as each environment says, or this for all"},
+    KeySpec{
+        "outputs.tone_map", files, choice, "", "\"environment\"", k_any,
+        R"("environment" | "linear" | "reinhard02" | "autolinear")", "",
+        "How radiance becomes 8 bits: as each environment's environment.cfg says (without one: "
+        "autolinear, which gives every picture a factor of its own, and a gamma of 2.2), or this "
+        "for all"},
     KeySpec{"outputs.tone_map_scale", files, number, "", "1", k_factor, "",
             R"(outputs.tone_map = "linear")", "Factor on the radiance"},
     KeySpec{"outputs.tone_map_prescale", files, number, "", "1", k_factor, "", k_reinhard,

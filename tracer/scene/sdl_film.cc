@@ -76,7 +76,8 @@ const SdlSection& film_section() {
       "film",
       "`environment.cfg`: the steps `film.imagepipeline.N.*` from linear radiance to a picture, in "
       "the order of N: at most one tone map, then at most one GAMMA_CORRECTION. Without any step: "
-      "TONEMAP_AUTOLINEAR, then a gamma of 2.2.",
+      "TONEMAP_AUTOLINEAR, then a gamma of 2.2. With steps and no GAMMA_CORRECTION pictures hold "
+      "radiance itself, which looks dark.",
       "",
       {},
       {{"TONEMAP_LINEAR",
