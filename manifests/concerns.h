@@ -22,6 +22,9 @@ namespace ds {
 ///                    camera inside the model, the lens wider than it, ...
 ///   names_by_case    images whose name differs from another's in upper and lower case only: where a
 ///                    file system does not tell these apart, their files are one
+///   meshes_damaged   model files, and environments with a mesh file, that lost faces when read
+///   models_unlikely  models with colours, uvs or normals that images read and that are hardly what is
+///                    meant
 struct Concern {
   std::string name;
   std::uint64_t count = 0;            ///< 0: none

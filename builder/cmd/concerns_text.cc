@@ -35,6 +35,11 @@ constexpr ConcernText k_texts[] = {
     {"names_by_case",
      "images have a name that differs from another's in upper and lower case only; on a disk that "
      "does not tell them apart (macOS, Windows) their files are one"},
+    {"meshes_damaged",
+     "models and environments lost faces when they were read, as for an index out of range", "",
+     true},
+    {"models_unlikely", "models have colours, uvs or normals that are hardly what is meant", "",
+     true},
 };
 
 const ConcernText& text_of(const Concern& concern) {

@@ -86,10 +86,13 @@ unsigned plane_reads(const PlaneType& plane) {
 }
 
 EnvironmentFacts facts_of(const Scene& environment) {
-  return {canonical_environment(environment), canonical_shapes(environment), environment.tone_map,
+  return {canonical_environment(environment),
+          canonical_shapes(environment),
+          environment.tone_map,
           longest_side(environment),
           std::any_of(environment.materials.begin(), environment.materials.end(),
-                      [](const Material& material) { return !material.unphysical.empty(); })};
+                      [](const Material& material) { return !material.unphysical.empty(); }),
+          environment.lost_faces};
 }
 
 std::string to_text(const EnvironmentFacts& facts, const std::vector<SourceFile>& files) {
@@ -102,7 +105,8 @@ std::string to_text(const EnvironmentFacts& facts, const std::vector<SourceFile>
                 {"shapes", facts.shapes},
                 {"tone_map", to_json(facts.tone_map)},
                 {"longest_side_m", facts.longest_side_m},
-                {"unphysical", facts.unphysical}}
+                {"unphysical", facts.unphysical},
+                {"lost_faces", facts.lost_faces}}
         .dump();
   } catch (const json::exception&) {  // a name that is no UTF-8
     return "";
@@ -118,7 +122,8 @@ std::optional<EnvironmentFacts> facts_from_text(const std::string& text) {
                             object.at("shapes").get<std::map<unsigned, std::string>>(),
                             tone_map_from(object.at("tone_map")),
                             object.at("longest_side_m").get<double>(),
-                            object.at("unphysical").get<bool>()};
+                            object.at("unphysical").get<bool>(),
+                            object.at("lost_faces").get<bool>()};
   } catch (const json::exception&) {
     return std::nullopt;
   } catch (const Error&) {  // a file that cannot be looked at: reading it says why

@@ -21,6 +21,7 @@ struct EnvironmentFacts {
   ToneMap tone_map;
   double longest_side_m = 0;  ///< of the box around its objects; 0 where it has none
   bool unphysical = false;    ///< a material of it gives back more light than it gets, or the like
+  bool lost_faces = false;    ///< a mesh of it did when it was read
 };
 
 /// What of an object a plane reads beside its places: its traits of kernels/plane_traits.h that say

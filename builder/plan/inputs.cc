@@ -23,6 +23,8 @@ constexpr const char* k_has_colors = "has_colors";
 
 MendedDamage damage_and_facts(const MeshReport& report) {
   MendedDamage known = mended_damage(report);
+  for (auto& unlikely : unlikely_properties(report))
+    known.push_back(std::move(unlikely));
   if (report.has_uvs) known.emplace_back(k_has_uvs, 1);
   if (report.has_colors) known.emplace_back(k_has_colors, 1);
   return known;
@@ -70,7 +72,7 @@ KnownModel Inputs::look_at_model(const std::filesystem::path& file) {
   if (stamp && stamps_ == Stamps::trust) content = database_.find_content(file, *stamp);
   const bool new_content = !content;
   if (!content) content = content_hash(file);
-  std::optional<KnownModel> known = database_.find_model(*content, k_host_render_version);
+  std::optional<KnownModel> known = database_.find_model(*content, k_mesh_reader_version);
   const bool new_model = !known;
   if (!known) {
     const Model model = read_model(file);
@@ -89,11 +91,15 @@ const Inputs::ModelFacts& Inputs::model(const std::filesystem::path& file) {
     ModelFacts facts;
     facts.hashes = known.hashes;
     facts.box = known.box;
+    facts.has.normals = known.hashes.normals != Hash128{};
     for (const auto& [name, count] : known.damage) {
+      const MeshReportColumn* const column = mesh_report_column(name);
       if (name == k_has_uvs)
         facts.has.uvs = true;
       else if (name == k_has_colors)
         facts.has.colors = true;
+      else if (column != nullptr && column->unlikely != nullptr)
+        facts.unlikely.emplace_back(name, count);
       else
         facts.damage.emplace_back(name, count);
     }
@@ -209,7 +215,7 @@ void Inputs::remember() {
   Transaction transaction(database_.connection());
   for (const NewModel& model : new_models_) {
     if (model.stamp) database_.put_content(model.file, *model.stamp, model.content);
-    database_.put_model(model.content, k_host_render_version, model.known);
+    database_.put_model(model.content, k_mesh_reader_version, model.known);
   }
   for (const NewContent& image : new_contents_)
     database_.put_content(image.file, image.stamp, image.content);

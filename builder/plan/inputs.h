@@ -38,6 +38,10 @@ class Inputs {
   const MeshHashes& model_hashes(const std::filesystem::path& file) { return model(file).hashes; }
   /// What reading it mended; throws likewise.
   const MendedDamage& model_damage(const std::filesystem::path& file) { return model(file).damage; }
+  /// What of its properties is hardly what is meant (unlikely_properties); throws likewise.
+  const MendedDamage& model_unlikely(const std::filesystem::path& file) {
+    return model(file).unlikely;
+  }
   /// The ball around the model as it is normalised. Reads it where the database does not know it.
   const Sphere& model_sphere(const std::filesystem::path& file, const NormaliseOptions& options);
   /// What its file has beside places; throws likewise.
@@ -76,7 +80,7 @@ class Inputs {
   /// What the database knows of a model, taken apart.
   struct ModelFacts {
     MeshHashes hashes;
-    MendedDamage damage;
+    MendedDamage damage, unlikely;
     MeshExtras has;
     Box box;
   };

@@ -5,6 +5,7 @@
 #include "builder/plan/limits.h"
 #include "builder/plan/manifest_state.h"
 #include "builder/plan/placed_files.h"
+#include "builder/plan/unlikely_properties.h"
 #include "builder/plan/unlikely_sizes.h"
 #include "tracer/base/log.h"
 
@@ -192,6 +193,38 @@ std::vector<std::string> edited_files(const Plan& plan) {
   return edited;
 }
 
+/// Said of the model, by each of its images alike: no image of it can be made.
+void check_normals(const Recipe& recipe, Inputs& inputs, const fs::path& model) {
+  if (recipe.normalise.normals == Normals::keep && !inputs.model_has(model).normals)
+    fail(
+        ErrorKind::asset,
+        "{}: has no normals to keep (models.normals = \"keep\"): \"smooth\" or \"flat\" makes them",
+        model.string());
+}
+
+/// Models and environments of images that can be made, whose damage is said where they are read.
+Concern count_damaged(const std::vector<PlannedImage>& images, Inputs& inputs) {
+  Concern concern{"meshes_damaged", 0, 0, {}};
+  std::set<const void*> seen;  // an environment's path is held in several places
+  std::set<std::string> environments;
+  Shared<fs::path> model;  // of the image before: a model's images follow each other
+  for (const PlannedImage& image : images) {
+    if (image.error) continue;
+    const ImageSpec& spec = image.spec;
+    if (!model.is_same(spec.model_file)) {
+      model = spec.model_file;
+      ++concern.of;
+      if (loses_faces(inputs.model_damage(spec.model_file))) add_example(concern, spec.model_name);
+    }
+    const Shared<fs::path>& folder = spec.environment_folder;
+    if (!seen.insert(folder.identity()).second || !environments.insert(folder->native()).second)
+      continue;
+    ++concern.of;
+    if (inputs.environment_facts(folder).lost_faces) add_example(concern, spec.environment_name);
+  }
+  return concern;
+}
+
 /// Counts the files, whose findings were said when they were read.
 Concern count_unphysical(const std::vector<PlannedImage>& images, Inputs& inputs) {
   Concern concern{"assets_unphysical", 0, 0, {}};
@@ -267,6 +300,7 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
     const PartHashes* known = planner.want(spec.id);
     image.spec = std::move(spec);
     try {
+      check_normals(dataset.recipe, inputs, image.spec.model_file);
       if (dataset.recipe.camera_fit)
         fit_image(image.spec, dataset.recipe,
                   inputs.model_sphere(image.spec.model_file, dataset.recipe.normalise));
@@ -302,7 +336,9 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
   std::vector<std::string> unlikely;
   plan.concerns = {count_unphysical(plan.images, inputs),
                    find_unlikely_sizes(dataset.recipe, plan.images, inputs, unlikely),
-                   count_names_by_case(plan.images)};
+                   count_names_by_case(plan.images),
+                   count_damaged(plan.images, inputs),
+                   find_unlikely_properties(dataset.recipe, plan.images, inputs, unlikely)};
   for (const std::string& line : unlikely)
     warn(line);
   snapshot.reset();

@@ -94,7 +94,8 @@ struct Plan {
   std::int64_t data_version = 0;              ///< Database::data_version before anything was read
   std::map<std::string, MendedModel> mended;  ///< by model name, of all shards' images
   /// Those of all shards' images that are known before any is made: assets_unphysical,
-  /// sizes_unlikely, names_by_case. Findings of the first two were warned of when they were found.
+  /// sizes_unlikely, names_by_case, meshes_damaged, models_unlikely. Findings, but for names_by_case,
+  /// were warned of when they were found.
   std::vector<Concern> concerns;
 };
 

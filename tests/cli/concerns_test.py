@@ -7,8 +7,8 @@ import zlib
 from harness import IMAGES, TinyCase, main
 
 NONE = {name: 0 for name in ("mask_empty", "mask_at_frame", "mask_small", "picture_black", "picture_white",
-                             "models_absent", "models_unlisted", "classes_empty", "splits_empty", "assets_unphysical",
-                             "sizes_unlikely", "names_by_case")}
+                             "models_absent", "models_unlisted", "classes_empty", "splits_empty",
+                             "assets_unphysical", "sizes_unlikely", "names_by_case", "meshes_damaged", "models_unlikely")}
 
 
 def grey_png(path):
@@ -146,6 +146,47 @@ class ConcernsTest(TinyCase):
         self.assertEqual((described["count"], described["of"]), (IMAGES, IMAGES))
         _, err = self.concerns(*large, "--strict", code=1)
         self.assertIn("images are of lengths that hardly go together", err)
+
+    def paint(self, name, head, values):
+        """A tetrahedron of whose vertices these properties have these values."""
+        points = ("0 0 0", "4 0 0", "0 4 0", "0 0 4")
+        (self.tiny / f"models/{name}").write_text(
+            "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n" +
+            "".join(f"property {one}\n" for one in head) +
+            "element face 4\nproperty list uchar int vertex_indices\nend_header\n" +
+            "".join(f"{point} {values}\n" for point in points) + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
+
+    def test_colours_of_another_range(self):
+        self.paint("dark.ply", ("uchar Red", "uchar Green", "uchar Blue"), "1 0 1")
+        self.paint("below.ply", ("float red", "float green", "float blue"), "-0.5 0.5 1")
+        self.assertEqual(self.concerns()[0]["models_unlikely"], 0)  # nothing shows them
+        for name in ("red", "green"):
+            (self.tiny / f"materials/{name}.mat").write_text(
+                f"scene.textures.paint.type = hitpointcolor\nscene.materials.{name}.kd = paint\n")
+        for _ in range(2):
+            concerns, err = self.concerns()
+            self.assertEqual(concerns["models_unlikely"], 2)
+            self.assertEqual(err.count("1 of 4 models (dark.ply): some of their colours are integers that use 1/255"), 1)
+            self.assertEqual(err.count("1 of 4 models (below.ply): some of their colours have parts below 0"), 1)
+        described = json.loads((self.out / "manifest/dataset.json").read_text())["concerns"]["models_unlikely"]
+        self.assertEqual(described, {"count": 2, "of": 4, "examples": ["below.ply", "dark.ply"]})
+        _, err = self.concerns("--strict", code=1)
+        self.assertIn("dsbuild: error: 2 of 4 models have colours, uvs or normals that are hardly what is meant", err)
+
+    def test_lost_faces(self):
+        (self.tiny / "models/torn.off").write_text(
+            "OFF 4 5 0\n0 0 0\n4 0 0\n0 4 0\n0 0 4\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 0 1 9\n")
+        concerns, err = self.concerns()
+        self.assertEqual(concerns["meshes_damaged"], 1)
+        self.assertEqual(err.count("warning"), 1, err)
+        _, err = self.concerns("--strict", code=1)
+        self.assertIn("lost faces when they were read", err)
+        # Indices from 1 are no damage: all faces are others.
+        (self.tiny / "models/torn.off").write_text(
+            "OFF 4 4 0\n0 0 0\n4 0 0\n0 4 0\n0 0 4\n3 1 3 2\n3 1 2 4\n3 1 4 3\n3 2 3 4\n")
+        run = self.run_it("build", self.recipe, "-o", self.out, "-k")
+        self.assertEqual(run.code, 1, run)
+        self.assertEqual(run.err.count("indices run from 1 to 4, the number of its vertices"), 1, run.err)
 
     def test_pictures_that_are_all_white(self):
         concerns, err = self.concerns("--set", "outputs.tone_map=linear", "--set", "outputs.tone_map_scale=1000")

@@ -66,6 +66,16 @@ struct MeshReport {
   /// Kept vertices whose normal, uv or colour is not finite; that is set to 0, of a colour only the
   /// components that are not.
   std::uint64_t bad_attributes = 0;
+  /// Colours, of vertices or faces as the file has them, with a part below 0, which becomes 0, or
+  /// above 1, which stays.
+  std::uint64_t negative_colors = 0, bright_colors = 0;
+  /// Colours of a file whose red, green and blue, or alpha, use the least 1/255 of their integer
+  /// type's range at most: those of another range.
+  std::uint64_t dark_colors = 0;
+  std::uint64_t zero_normals = 0;  ///< kept vertices whose stored normal has no direction
+  /// Properties of a PLY file that are not used: an earlier one means the same, or they lack those
+  /// that make them whole.
+  std::uint64_t unused_places = 0, unused_normals = 0, unused_uvs = 0, unused_colors = 0;
   std::uint64_t zero_area = 0;        ///< triangles removed: no area
   std::uint64_t duplicate_faces = 0;  ///< triangles removed: the same three corner positions as an
                                       ///< earlier one, whatever the order
@@ -83,14 +93,21 @@ struct MeshReport {
 };
 
 /// The counts of MeshReport with their names, in the order a table should have them. `damage`: what
-/// was done about what no whole file holds; null for counts that tell of a mesh and change no
-/// picture, as triangles without area do not.
+/// was done about what no whole file holds. `unlikely`: what the count says of a property that whole
+/// files have and that is hardly what is meant, which matters to pictures that read it. Both null for
+/// counts that tell of a mesh and change no picture, as triangles without area do not.
 struct MeshReportColumn {
   const char* name;
   std::uint64_t MeshReport::*count;
   const char* damage = nullptr;
+  const char* unlikely = nullptr;
+  bool MeshExtras::*property = nullptr;  ///< that `unlikely` is of
+  bool loses_faces = false;              ///< damage that cost faces
 };
 inline constexpr const char* k_turned_outwards = "flipped";
+inline constexpr const char* k_first_property_counts =
+    "are properties of the file that are not read: an earlier one means the same (u and s, red and "
+    "diffuse_red, vertices' colours and faces'), or one that goes with them is missing";
 inline constexpr std::array k_mesh_report_columns{
     MeshReportColumn{"vertices", &MeshReport::vertices},
     MeshReportColumn{"faces", &MeshReport::faces},
@@ -99,11 +116,38 @@ inline constexpr std::array k_mesh_report_columns{
                      "faces of fewer than three corners removed"},
     MeshReportColumn{"triangles", &MeshReport::triangles},
     MeshReportColumn{"out_of_range", &MeshReport::out_of_range,
-                     "faces with an index out of range removed"},
+                     "faces with an index out of range removed", nullptr, nullptr, true},
     MeshReportColumn{"non_finite", &MeshReport::non_finite,
-                     "vertices not finite or beyond 1e18 removed with their faces"},
+                     "vertices not finite or beyond 1e18 removed with their faces", nullptr,
+                     nullptr, true},
     MeshReportColumn{"bad_attributes", &MeshReport::bad_attributes,
                      "normals, uvs or colours not finite set to 0"},
+    MeshReportColumn{"negative_colors", &MeshReport::negative_colors, nullptr,
+                     "have parts below 0, which are taken as 0", &MeshExtras::colors},
+    MeshReportColumn{
+        "bright_colors", &MeshReport::bright_colors, nullptr,
+        "have parts above 1, which give back more light than they get: they run from 0 "
+        "to 1, or in whole numbers from 0 to 255",
+        &MeshExtras::colors},
+    MeshReportColumn{
+        "dark_colors", &MeshReport::dark_colors, nullptr,
+        "are integers that use 1/255 of what their type holds at most, which is nearly "
+        "black, or as alpha clear: uchar runs from 0 to 255, ushort to 65535; what runs "
+        "from 0 to 1 is float",
+        &MeshExtras::colors},
+    MeshReportColumn{
+        "zero_normals", &MeshReport::zero_normals, nullptr,
+        "are of length 0, and faces there flat; models.normals = \"smooth\" or \"flat\" "
+        "makes normals",
+        &MeshExtras::normals},
+    MeshReportColumn{"unused_places", &MeshReport::unused_places,
+                     "further properties that mean x, y or z not read"},
+    MeshReportColumn{"unused_normals", &MeshReport::unused_normals, nullptr,
+                     k_first_property_counts, &MeshExtras::normals},
+    MeshReportColumn{"unused_uvs", &MeshReport::unused_uvs, nullptr, k_first_property_counts,
+                     &MeshExtras::uvs},
+    MeshReportColumn{"unused_colors", &MeshReport::unused_colors, nullptr, k_first_property_counts,
+                     &MeshExtras::colors},
     MeshReportColumn{"zero_area", &MeshReport::zero_area},
     MeshReportColumn{"duplicate_faces", &MeshReport::duplicate_faces},
     MeshReportColumn{"unreferenced", &MeshReport::unreferenced},
@@ -119,8 +163,18 @@ inline constexpr std::array k_mesh_report_columns{
 /// file.
 using MendedDamage = std::vector<std::pair<std::string, std::uint64_t>>;
 MendedDamage mended_damage(const MeshReport& report);
+/// What of its properties is hardly what is meant, likewise.
+MendedDamage unlikely_properties(const MeshReport& report);
+/// The column of a name in either; null for none.
+const MeshReportColumn* mesh_report_column(std::string_view name);
+/// Whether faces were lost for it.
+bool loses_faces(const MendedDamage& damage);
 /// "faces with an index out of range removed: 2, ...".
 std::string to_text(const MendedDamage& damage);
+
+/// Raised when reading makes another mesh or report of some file: what was found out about files
+/// before counts no more.
+inline constexpr int k_mesh_reader_version = 9;
 
 /// A mesh as its file describes it, before normalisation.
 struct Model {

@@ -102,33 +102,50 @@ class ColorRange {
     if (most_ <= 1 || (!whole_ && most_ <= k_brightest)) return 1;
     return most_ <= 255 ? 255.0F : 65535.0F;
   }
+  /// Of values that are not all 0.
+  bool is_up_to(float limit) const { return most_ > 0 && most_ <= limit; }
 
  private:
   float most_ = 0;
   bool whole_ = true;
 };
 
+/// What rounding does not make of white.
+bool is_bright(float x) {
+  constexpr float k_rounded_white = 1.001F;
+  return x > k_rounded_white && std::isfinite(x);
+}
+
 }  // namespace
 
-void unit_colors(std::vector<MeshColor>& colors) {
+void unit_colors(std::vector<MeshColor>& colors, DarkColors dark, MeshReport& report) {
   ColorRange rgb, alpha;
   for (const MeshColor& c : colors) {
     for (std::size_t i = 0; i < 3; ++i)
       rgb.add(c[i]);
     alpha.add(c[3]);
   }
+  if (rgb.is_up_to(dark.color) || alpha.is_up_to(dark.alpha)) report.dark_colors += colors.size();
   const float rgb_range = rgb.range(), alpha_range = alpha.range();
   for (MeshColor& c : colors) {
     for (std::size_t i = 0; i < 3; ++i)
-      c[i] = c[i] < 0 ? 0.0F : c[i] / rgb_range;
-    c[3] = c[3] < 0 ? 1.0F : c[3] / alpha_range;
+      c[i] /= rgb_range;
+    c[3] = c[3] == k_no_alpha ? 1.0F : c[3] / alpha_range;
+    if (std::any_of(c.begin(), c.end(), [](float x) { return x < 0; })) ++report.negative_colors;
+    if (std::any_of(c.begin(), c.end(), is_bright)) ++report.bright_colors;
+    for (float& part : c)
+      part = part < 0 ? 0.0F : part;
   }
 }
 
-void split_corners(Polygons& polygons) {
-  unit_colors(polygons.colors);
-  unit_colors(polygons.face_colors);
-  if (!polygons.colors.empty()) polygons.face_colors.clear();
+void split_corners(Polygons& polygons, MeshReport& report) {
+  unit_colors(polygons.colors, polygons.dark_colors, report);
+  if (polygons.colors.empty()) unit_colors(polygons.face_colors, polygons.dark_face_colors, report);
+  if (!polygons.colors.empty() && !polygons.face_colors.empty()) {
+    report.unused_colors += 3;
+    polygons.face_colors.clear();
+  }
+  if (!polygons.uvs.empty() && !polygons.corner_uvs.empty()) report.unused_uvs += 2;
   if (!polygons.corner_uvs.empty() || !polygons.face_colors.empty()) Splitter(polygons).split();
 }
 

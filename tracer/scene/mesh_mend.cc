@@ -45,6 +45,18 @@ void count_faces(const Polygons& polygons, MeshReport& report) {
   }
 }
 
+/// Such a file loses the faces at its last vertex, and all others are of wrong vertices.
+void refuse_indices_from_1(const Polygons& polygons, const std::string& name) {
+  if (polygons.corners.empty()) return;
+  const auto [least, most] = std::minmax_element(polygons.corners.begin(), polygons.corners.end());
+  if (*least == 1 && *most == polygons.positions.size())
+    fail(
+        ErrorKind::asset,
+        "{}: its faces' indices run from 1 to {}, the number of its vertices: they must count from "
+        "0, take 1 off each",
+        name, *most);
+}
+
 std::vector<char> find_usable(const std::vector<Vec3d>& positions, MeshReport& report) {
   std::vector<char> usable(positions.size());
   for (std::size_t v = 0; v < usable.size(); ++v) {
@@ -142,6 +154,7 @@ void mend_attributes(FileMesh& mesh, MeshReport& report) {
     if (!mesh.normals.empty()) {
       bad = !is_finite(mesh.normals[v]);
       const Vec3d unit = bad ? Vec3d{} : normalized(to_double(mesh.normals[v]));
+      if (!bad && unit == Vec3d{}) ++report.zero_normals;
       mesh.normals[v] = to_mesh_floats(unit);
     }
     if (!mesh.uvs.empty() && !is_finite(mesh.uvs[v])) {
@@ -184,23 +197,42 @@ void drop_unreferenced(FileMesh& mesh, MeshReport& report) {
       v = renumbered[v];
 }
 
+MendedDamage counts_with(const MeshReport& report, const char* MeshReportColumn::*text) {
+  MendedDamage counts;
+  for (const MeshReportColumn& column : k_mesh_report_columns)
+    if (column.*text != nullptr && report.*column.count > 0)
+      counts.emplace_back(column.name, report.*column.count);
+  return counts;
+}
+
 }  // namespace
 
 MendedDamage mended_damage(const MeshReport& report) {
-  MendedDamage damage;
-  for (const MeshReportColumn& column : k_mesh_report_columns)
-    if (column.damage != nullptr && report.*column.count > 0)
-      damage.emplace_back(column.name, report.*column.count);
-  return damage;
+  return counts_with(report, &MeshReportColumn::damage);
+}
+
+MendedDamage unlikely_properties(const MeshReport& report) {
+  return counts_with(report, &MeshReportColumn::unlikely);
+}
+
+const MeshReportColumn* mesh_report_column(std::string_view name) {
+  const auto* const at = std::find_if(k_mesh_report_columns.begin(), k_mesh_report_columns.end(),
+                                      [&](const MeshReportColumn& c) { return name == c.name; });
+  return at == k_mesh_report_columns.end() ? nullptr : at;
+}
+
+bool loses_faces(const MendedDamage& damage) {
+  return std::any_of(damage.begin(), damage.end(), [](const auto& what) {
+    const MeshReportColumn* const column = mesh_report_column(what.first);
+    return column != nullptr && column->loses_faces;
+  });
 }
 
 std::string to_text(const MendedDamage& damage) {
   std::string text;
   for (const auto& [name, count] : damage) {
-    const auto column =
-        std::find_if(k_mesh_report_columns.begin(), k_mesh_report_columns.end(),
-                     [&name = name](const MeshReportColumn& c) { return name == c.name; });
-    const bool known = column != k_mesh_report_columns.end() && column->damage != nullptr;
+    const MeshReportColumn* const column = mesh_report_column(name);
+    const bool known = column != nullptr && column->damage != nullptr;
     text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", known ? column->damage : name.c_str(),
                         count);
   }
@@ -212,7 +244,12 @@ Model mend(Polygons polygons, const std::string& name, Winding winding) {
   MeshReport& report = model.report;
   count_faces(polygons, report);
   report.trailing_bytes = polygons.trailing_bytes;
-  split_corners(polygons);
+  report.unused_places = polygons.unused.places;
+  report.unused_normals = polygons.unused.normals;
+  report.unused_uvs = polygons.unused.uvs;
+  report.unused_colors = polygons.unused.colors;
+  refuse_indices_from_1(polygons, name);
+  split_corners(polygons, report);
   if (report.vertices > k_most_vertices || report.triangles > k_most_triangles)
     fail(ErrorKind::asset, "{}: at most {} vertices and {} triangles can be used, got {} and {}",
          name, k_most_vertices, k_most_triangles, report.vertices, report.triangles);

@@ -165,7 +165,7 @@ Mesh with_corner_normals(const FileMesh& source, const std::vector<Vec3>& placed
 
 Mesh with_stored_normals(const FileMesh& source, std::vector<Vec3> placed, UpAxis up) {
   if (source.normals.empty())
-    fail(ErrorKind::asset, "normals = \"keep\" wants a model with stored normals, found none");
+    fail(ErrorKind::asset, "the model has no normals to keep: \"smooth\" or \"flat\" makes them");
   Mesh mesh;
   mesh.positions = std::move(placed);
   mesh.normals.reserve(source.normals.size());

@@ -13,10 +13,23 @@
 
 namespace ds {
 
+inline constexpr float k_no_alpha = -1;
+
+/// Colours of an integer type that runs further: what is up to these uses 1/255 of it at most.
+/// 0 for other types.
+struct DarkColors {
+  float color = 0, alpha = 0;
+};
+
+/// Properties that a reader passes over, see MeshReport.
+struct UnusedProperties {
+  std::uint64_t places = 0, normals = 0, uvs = 0, colors = 0;
+};
+
 /// A model as a reader finds it: polygons of any size, nothing checked or mended. Indices that are
 /// not in [0, 2^32 - 1) are 2^32 - 1; any may be at or above the vertex count. `normals`,
 /// `uvs` and `colors` are empty or as long as `positions`. No -0. Colours are as the file has them
-/// until `unit_colors`; an alpha below 0 says that there is none.
+/// until `unit_colors`; an alpha of k_no_alpha says that there is none.
 struct Polygons {
   std::vector<Vec3d> positions;
   std::vector<Vec3> normals;
@@ -26,7 +39,9 @@ struct Polygons {
   std::vector<std::size_t> face_ends;  ///< where in `corners` each face ends
   std::vector<Vec2> corner_uvs;        ///< empty or as long as `corners`; goes before `uvs`
   std::vector<MeshColor> face_colors;  ///< empty or one a face; where there are no `colors`
-  std::size_t trailing_bytes = 0;      ///< behind what the header promises
+  DarkColors dark_colors, dark_face_colors;
+  UnusedProperties unused;
+  std::size_t trailing_bytes = 0;  ///< behind what the header promises
 
   std::span<const std::uint32_t> face(std::size_t i) const {
     const std::size_t begin = i == 0 ? 0 : face_ends[i - 1];
@@ -42,7 +57,8 @@ Polygons read_off(std::string_view bytes, const std::string& name);
 bool is_ply(std::string_view bytes);
 bool is_off(std::string_view bytes);
 
-/// Triangulates, and mends what MeshReport lists. Throws Error(asset) where no triangle is left.
+/// Triangulates, and mends what MeshReport lists. Throws Error(asset) where no triangle is left, and
+/// where indices count from 1.
 Model mend(Polygons polygons, const std::string& name, Winding winding);
 
 /// Colours of a file whose type does not tell their range: up to 1, or up to 16 with fractions, they
@@ -52,8 +68,10 @@ void unit_colors(std::vector<MeshColor>& colors);
 
 /// Gives each corner that has a uv or a colour of its own a vertex of its own, so that both stand at
 /// vertices; corners that agree share one. A vertex stays in its place for the first of its corners; those of
-/// further ones follow behind all. Leaves polygons without either as they are.
-void split_corners(Polygons& polygons);
+/// further ones follow behind all. Leaves polygons without either as they are. Colours of vertices go
+/// before those of faces, uvs of corners before those of vertices. Counts what is passed over, and
+/// colours hardly meant.
+void split_corners(Polygons& polygons, MeshReport& report);
 
 /// A double from a file as the float a mesh holds: too large becomes infinite, -0 becomes 0.
 float to_mesh_float(double value);

@@ -173,7 +173,7 @@ class OffReader {
     if (keyword_.normals) out_.normals.push_back(to_mesh_floats({row[3], row[4], row[5]}));
     if (keyword_.uvs) out_.uvs.push_back({to_mesh_float(row[end]), to_mesh_float(row[end + 1])});
     if (!keyword_.colours && !undeclared) return;
-    MeshColor color{0, 0, 0, -1};
+    MeshColor color{0, 0, 0, k_no_alpha};
     for (std::size_t i = begin; i < end; ++i)
       color[i - begin] = to_mesh_float(row[i]);
     out_.colors.push_back(color);
@@ -192,7 +192,7 @@ class OffReader {
         out_.corners.push_back(cursor_.index());
       }
       out_.face_ends.push_back(out_.corners.size());
-      MeshColor color{1, 1, 1, -1};
+      MeshColor color{1, 1, 1, k_no_alpha};
       std::size_t values = 0;
       for (; values < k_most_colour_values && !may_end(); ++values)
         color[values] = to_mesh_float(cursor_.number());
@@ -213,8 +213,8 @@ class OffReader {
   /// White in the range of the file's other colours.
   MeshColor white_of_range() const {
     for (const MeshColor& c : out_.face_colors)
-      if (c[0] > 1 || c[1] > 1 || c[2] > 1) return {255, 255, 255, -1};
-    return {1, 1, 1, -1};
+      if (c[0] > 1 || c[1] > 1 || c[2] > 1) return {255, 255, 255, k_no_alpha};
+    return {1, 1, 1, k_no_alpha};
   }
 
   /// One further line may stand there, if it is no face.

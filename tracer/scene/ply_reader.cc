@@ -2,6 +2,7 @@
 #include "tracer/base/error.h"
 #include "tracer/scene/mesh_polygons.h"
 #include "tracer/scene/ply_header.h"
+#include "tracer/scene/ply_layout.h"
 #include "tracer/scene/ply_source.h"
 
 #include <algorithm>
@@ -11,122 +12,36 @@
 #include <string_view>
 
 // Of a PLY file's elements the reader takes
-//   vertex     x y z, nx ny nz, a pair of texture coordinates under any of three names, and a colour
-//              (red green blue, alpha; also r g b a and diffuse_red ...; alpha alone is of white)
+//   vertex     x y z, nx ny nz, a pair of texture coordinates (u v, s t, texture_u texture_v or
+//              texture_s texture_t), and a colour (red green blue, alpha; also r g b a and
+//              diffuse_red ...; alpha alone is of white)
 //   face       vertex_index or vertex_indices; texcoord, two values for each of these; a colour
 //   tristrips  vertex_index or vertex_indices, strips of triangles that an index below 0 ends
-// in any order; everything else is passed over. Properties may have any order and type. Colours of
-// unsigned char run to 255, of unsigned short to 65535; of another type see unit_colors.
+// in any order; everything else is passed over. Names may be in any case, properties in any order and
+// of any type; of names that mean the same see ply_layout.h. Colours of unsigned char run to 255, of
+// unsigned short to 65535; of another type see unit_colors.
 
 namespace ds {
 namespace {
 
-/// What a vertex property is for. A row of values has one place for each but `skipped`.
-enum Slot : std::size_t {
-  k_x,
-  k_y,
-  k_z,
-  k_nx,
-  k_ny,
-  k_nz,
-  k_u,
-  k_v,
-  k_red,
-  k_green,
-  k_blue,
-  k_alpha,
-  k_slots,
-  k_skipped = k_slots
-};
-using Row = std::array<double, k_slots>;
-
-struct SlotName {
-  std::string_view name;
-  Slot slot;
-};
-constexpr std::array k_slot_names{
-    SlotName{"x", k_x},         SlotName{"y", k_y},         SlotName{"z", k_z},
-    SlotName{"nx", k_nx},       SlotName{"ny", k_ny},       SlotName{"nz", k_nz},
-    SlotName{"u", k_u},         SlotName{"v", k_v},         SlotName{"s", k_u},
-    SlotName{"t", k_v},         SlotName{"texture_u", k_u}, SlotName{"texture_v", k_v},
-    SlotName{"texture_s", k_u}, SlotName{"texture_t", k_v},
-};
-constexpr std::array k_color_names{
-    SlotName{"red", k_red},
-    SlotName{"green", k_green},
-    SlotName{"blue", k_blue},
-    SlotName{"alpha", k_alpha},
-    SlotName{"r", k_red},
-    SlotName{"g", k_green},
-    SlotName{"b", k_blue},
-    SlotName{"a", k_alpha},
-    SlotName{"diffuse_red", k_red},
-    SlotName{"diffuse_green", k_green},
-    SlotName{"diffuse_blue", k_blue},
-};
-
-struct VertexLayout {
-  std::vector<Slot> slots;  ///< one a property of the element
-  bool has_normals = false;
-  bool has_uvs = false;
-  bool has_colors = false;
-};
-
-Slot color_slot_of(const PlyProperty& property) {
-  if (property.count_type) return k_skipped;
-  for (const SlotName& known : k_color_names)
-    if (known.name == property.name) return known.slot;
-  return k_skipped;
-}
-
-Slot slot_of(const PlyProperty& property) {
-  if (property.count_type) return k_skipped;
-  for (const SlotName& known : k_slot_names)
-    if (known.name == property.name) return known.slot;
-  return color_slot_of(property);
-}
-
-/// Whether there is a whole colour, or an alpha alone, whose colour is white.
-bool has_color(const std::array<int, k_slots + 1>& found) {
-  const int colors = (found[k_red] > 0) + (found[k_green] > 0) + (found[k_blue] > 0);
-  return colors == 3 || (colors == 0 && found[k_alpha] > 0);
+void add(UnusedProperties& to, const UnusedProperties& more) {
+  to.places += more.places;
+  to.normals += more.normals;
+  to.uvs += more.uvs;
+  to.colors += more.colors;
 }
 
 /// What stands where a file says nothing: white, and as alpha what unit_colors takes for none.
-Row first_row() {
-  Row row{};
+PlyRow first_row() {
+  PlyRow row{};
   row[k_red] = row[k_green] = row[k_blue] = 1;
-  row[k_alpha] = -1;
+  row[k_alpha] = static_cast<double>(k_no_alpha);
   return row;
 }
 
-/// What a colour's value of that type is divided by.
-double color_range(PlyType type) {
-  return type == PlyType::uint8 ? 255 : type == PlyType::uint16 ? 65535 : 1;
-}
-
-MeshColor color_of(const Row& row) {
+MeshColor color_of(const PlyRow& row) {
   return {to_mesh_float(row[k_red]), to_mesh_float(row[k_green]), to_mesh_float(row[k_blue]),
           to_mesh_float(row[k_alpha])};
-}
-
-VertexLayout layout_of(const PlyElement& vertex, const std::string& name) {
-  VertexLayout layout;
-  std::array<int, k_slots + 1> found{};
-  for (const PlyProperty& property : vertex.properties) {
-    Slot slot = slot_of(property);
-    // A file may hold texture coordinates under two names; the first pair is taken.
-    if (found[slot]++ > 0) slot = k_skipped;
-    layout.slots.push_back(slot);
-  }
-  for (const Slot slot : {k_x, k_y, k_z})
-    if (found[slot] == 0)
-      fail(ErrorKind::asset, "{}:{}: element vertex must have numbers x, y and z, found no {}",
-           name, vertex.line, k_slot_names[slot].name);
-  layout.has_normals = found[k_nx] > 0 && found[k_ny] > 0 && found[k_nz] > 0;
-  layout.has_uvs = found[k_u] > 0 && found[k_v] > 0;
-  layout.has_colors = has_color(found);
-  return layout;
 }
 
 /// The least bytes one of `element` takes in the file; in a text each value takes two.
@@ -147,75 +62,36 @@ void skip_property(Source& source, const PlyProperty& property) {
 template <typename Source>
 void read_vertices(Source& source, const PlyHeader& header, const PlyElement& element,
                    const std::string& name, Polygons& out) {
-  const VertexLayout layout = layout_of(element, name);
+  const PlyLayout layout = vertex_layout(element, name);
+  const bool has_normals = layout.has_kind(PlyKind::normal), has_uvs = layout.has_kind(PlyKind::uv);
+  out.dark_colors = layout.dark_colors;
+  add(out.unused, layout.unused);
   const std::size_t expected =
       believable(element.count, source.bytes_left(), least_bytes(element, header.format));
   out.positions.reserve(expected);
-  if (layout.has_normals) out.normals.reserve(expected);
-  if (layout.has_uvs) out.uvs.reserve(expected);
-  if (layout.has_colors) out.colors.reserve(expected);
+  if (has_normals) out.normals.reserve(expected);
+  if (has_uvs) out.uvs.reserve(expected);
+  if (layout.has_colors()) out.colors.reserve(expected);
 
-  Row row = first_row();
+  PlyRow row = first_row();
   for (std::uint64_t i = 0; i < element.count; ++i) {
     source.begin(element, i);
     for (std::size_t p = 0; p < layout.slots.size(); ++p) {
       const PlyProperty& property = element.properties[p];
-      const Slot slot = layout.slots[p];
+      const PlySlot slot = layout.slots[p];
       if (slot == k_skipped)
         skip_property(source, property);
       else
-        row[slot] = source.number(property.type) / (slot < k_red ? 1 : color_range(property.type)) +
-                    0.0;  // -0 becomes 0
+        row[slot] =
+            source.number(property.type) / (slot < k_red ? 1 : ply_color_range(property.type)) +
+            0.0;  // -0 becomes 0
     }
     source.end();
     out.positions.push_back({row[k_x], row[k_y], row[k_z]});
-    if (layout.has_normals)
-      out.normals.push_back(to_mesh_floats({row[k_nx], row[k_ny], row[k_nz]}));
-    if (layout.has_uvs) out.uvs.push_back({to_mesh_float(row[k_u]), to_mesh_float(row[k_v])});
-    if (layout.has_colors) out.colors.push_back(color_of(row));
+    if (has_normals) out.normals.push_back(to_mesh_floats({row[k_nx], row[k_ny], row[k_nz]}));
+    if (has_uvs) out.uvs.push_back({to_mesh_float(row[k_u]), to_mesh_float(row[k_v])});
+    if (layout.has_colors()) out.colors.push_back(color_of(row));
   }
-}
-
-/// Which property of a face or strip lists its corners.
-std::size_t corner_list_of(const PlyElement& face, const std::string& name) {
-  const auto is_corner_list = [](const PlyProperty& property) {
-    return property.count_type &&
-           (property.name == "vertex_index" || property.name == "vertex_indices");
-  };
-  const auto& properties = face.properties;
-  const auto found = std::find_if(properties.begin(), properties.end(), is_corner_list);
-  if (found == properties.end())
-    fail(ErrorKind::asset, "{}:{}: element {} must have a list vertex_index or vertex_indices",
-         name, face.line, face.name);
-  if (std::find_if(found + 1, properties.end(), is_corner_list) != properties.end())
-    fail(ErrorKind::asset, "{}:{}: element {} has both vertex_index and vertex_indices", name,
-         face.line, face.name);
-  return static_cast<std::size_t>(found - properties.begin());
-}
-
-/// What is read of the faces of one element.
-struct FaceLayout {
-  std::size_t corners = 0;   ///< number of the property that lists them
-  std::size_t uvs = 0;       ///< likewise; that of no property where there are none
-  std::vector<Slot> colors;  ///< one a property; those of colours only where has_color
-  bool has_colors = false;
-};
-
-FaceLayout face_layout_of(const PlyElement& face, const std::string& name) {
-  FaceLayout layout;
-  layout.corners = corner_list_of(face, name);
-  layout.uvs = face.properties.size();
-  std::array<int, k_slots + 1> found{};
-  for (std::size_t p = 0; p < face.properties.size(); ++p) {
-    const PlyProperty& property = face.properties[p];
-    if (property.count_type && (property.name == "texcoord" || property.name == "texcoords"))
-      layout.uvs = p;
-    const Slot slot = color_slot_of(property);
-    layout.colors.push_back(found[slot]++ > 0 ? k_skipped : slot);
-  }
-  layout.has_colors = has_color(found);
-  if (!layout.has_colors) std::fill(layout.colors.begin(), layout.colors.end(), k_skipped);
-  return layout;
 }
 
 /// The texture coordinates of the face whose corners have been or will be read; as many as the list
@@ -234,16 +110,19 @@ void read_corner_uvs(Source& source, const PlyProperty& property, std::vector<Ve
 template <typename Source>
 void read_faces(Source& source, const PlyHeader& header, const PlyElement& element,
                 const std::string& name, Polygons& out) {
-  const FaceLayout layout = face_layout_of(element, name);
+  const PlyFaceLayout layout = face_layout(element, name);
+  const bool has_colors = layout.colors.has_colors();
+  out.dark_face_colors = layout.colors.dark_colors;
+  add(out.unused, layout.colors.unused);
   const bool has_uvs = layout.uvs < element.properties.size();
   const std::size_t expected =
       believable(element.count, source.bytes_left(), least_bytes(element, header.format));
   out.face_ends.reserve(out.face_ends.size() + expected);
   // Strips may stand before.
   if (has_uvs) out.corner_uvs.resize(out.corners.size());
-  if (layout.has_colors) out.face_colors.resize(out.face_ends.size(), {1, 1, 1, 1});
+  if (has_colors) out.face_colors.resize(out.face_ends.size(), {1, 1, 1, 1});
   bool any_uv = false;
-  Row row = first_row();
+  PlyRow row = first_row();
   for (std::uint64_t i = 0; i < element.count; ++i) {
     source.begin(element, i);
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
@@ -254,8 +133,9 @@ void read_faces(Source& source, const PlyHeader& header, const PlyElement& eleme
           out.corners.push_back(source.index(property.type));
       } else if (p == layout.uvs) {
         read_corner_uvs(source, property, out.corner_uvs);
-      } else if (layout.colors[p] != k_skipped) {
-        row[layout.colors[p]] = source.number(property.type) / color_range(property.type) + 0.0;
+      } else if (layout.colors.slots[p] != k_skipped) {
+        row[layout.colors.slots[p]] =
+            source.number(property.type) / ply_color_range(property.type) + 0.0;
       } else {
         skip_property(source, property);
       }
@@ -269,7 +149,7 @@ void read_faces(Source& source, const PlyHeader& header, const PlyElement& eleme
       source.fail_here(fmt::format("face {} has {} corners and {} pairs of {}", i,
                                    out.corners.size() - before, out.corner_uvs.size() - before,
                                    element.properties[layout.uvs].name));
-    if (layout.has_colors) out.face_colors.push_back(color_of(row));
+    if (has_colors) out.face_colors.push_back(color_of(row));
     out.face_ends.push_back(out.corners.size());
   }
   if (!any_uv) out.corner_uvs.clear();
@@ -332,11 +212,11 @@ template <typename Source>
 Polygons read_body(Source source, const PlyHeader& header, const std::string& name) {
   Polygons out;
   for (const PlyElement& element : header.elements) {
-    if (element.name == "vertex")
+    if (is_ply_name(element.name, "vertex"))
       read_vertices(source, header, element, name, out);
-    else if (element.name == "face")
+    else if (is_ply_name(element.name, "face"))
       read_faces(source, header, element, name, out);
-    else if (element.name == "tristrips")
+    else if (is_ply_name(element.name, "tristrips"))
       read_strips(source, element, name, out);
     else
       skip_element(source, element);
@@ -350,11 +230,15 @@ Polygons read_body(Source source, const PlyHeader& header, const std::string& na
 Polygons read_ply(std::string_view bytes, const std::string& name) {
   const PlyHeader header = parse_ply_header(bytes, name);
   const auto has = [&](std::string_view wanted) {
-    return std::any_of(header.elements.begin(), header.elements.end(),
-                       [&](const PlyElement& element) { return element.name == wanted; });
+    const auto count =
+        std::count_if(header.elements.begin(), header.elements.end(),
+                      [&](const PlyElement& element) { return is_ply_name(element.name, wanted); });
+    if (count > 1) fail(ErrorKind::asset, "{}: has {} elements {}", name, count, wanted);
+    return count == 1;
   };
   if (!has("vertex")) fail(ErrorKind::asset, "{}: has no element vertex", name);
-  if (!has("face") && !has("tristrips")) fail(ErrorKind::asset, "{}: has no element face", name);
+  if (const bool face = has("face"), strips = has("tristrips"); !face && !strips)
+    fail(ErrorKind::asset, "{}: has no element face", name);
   switch (header.format) {
     case PlyFormat::ascii:
       return read_body(PlyTextSource(bytes, header, name), header, name);

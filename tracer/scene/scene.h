@@ -137,6 +137,9 @@ struct Scene {
   std::vector<Object> objects;
   std::vector<Light> lights;
   ToneMap tone_map;
+  /// What was wrong with its objects' files, a line each; no part of a picture.
+  std::vector<std::string> mended_meshes{};
+  bool lost_faces = false;  ///< one of them did when it was read
 };
 
 /// Perspective camera with an optional thin lens.

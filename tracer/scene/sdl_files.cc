@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tracer/base/log.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/sdl_prune.h"
 #include "tracer/scene/sdl_reader.h"
@@ -75,6 +76,8 @@ Scene read_environment(const std::filesystem::path& folder,
   }
   Scene environment = prune_environment(std::move(reader.scene));
   warn_of_materials(environment);
+  for (const std::string& line : environment.mended_meshes)
+    warn(line);
   warn_of_environment(environment, folder.string());
   return environment;
 }

@@ -11,11 +11,25 @@
 namespace ds {
 namespace {
 
+/// Of normals too, which an environment's meshes keep; what textures may read is not looked at.
+void note_mended(Scene& scene, const std::filesystem::path& file, const MeshReport& report) {
+  const MendedDamage damage = mended_damage(report);
+  if (!damage.empty())
+    scene.mended_meshes.push_back(fmt::format("{}: mended: {}", file.string(), to_text(damage)));
+  if (report.zero_normals > 0)
+    scene.mended_meshes.push_back(
+        fmt::format("{}: {} of its normals are of length 0, and faces there flat", file.string(),
+                    report.zero_normals));
+  scene.lost_faces = scene.lost_faces || loses_faces(damage);
+}
+
 std::optional<FileMesh> read_ply(const SdlNode& node) {
   const std::optional<std::filesystem::path> file = node.file("ply");
   if (!file) return std::nullopt;
   try {
-    return read_model(*file, Winding::as_stored).mesh;
+    Model model = read_model(*file, Winding::as_stored);
+    note_mended(node.reader().scene, *file, model.report);
+    return std::move(model.mesh);
   } catch (const Error& error) {
     if (node.reader().missed.insert(file->string()).second) node.error("ply", "{}", error.what());
     return std::nullopt;

@@ -84,6 +84,8 @@ Scene prune_environment(Scene scene) {
   result.objects = std::move(scene.objects);
   result.lights = std::move(scene.lights);
   result.tone_map = scene.tone_map;
+  result.mended_meshes = std::move(scene.mended_meshes);
+  result.lost_faces = scene.lost_faces;
   return std::move(result);
 }
 
