@@ -283,17 +283,51 @@ std::optional<std::size_t> Labels::index_of(std::string_view key) const {
   return static_cast<std::size_t>(at - sorted_.begin());
 }
 
-std::optional<std::size_t> Labels::find_index(std::string_view model_file_name) const {
-  if (const auto found = index_of(model_file_name)) return found;
+std::vector<std::size_t> Labels::find_all(std::string_view model_file_name) const {
+  std::vector<std::size_t> found;
+  const auto add = [&](std::string_view key) {
+    const auto index = index_of(key);
+    if (index && std::find(found.begin(), found.end(), *index) == found.end())
+      found.push_back(*index);
+  };
   const std::string_view stem = model_file_name.substr(0, model_file_name.rfind('.'));
-  if (const auto found = index_of(stem)) return found;
-  if (stem.starts_with('m') && all_digits(stem.substr(1))) return index_of(stem.substr(1));
-  return std::nullopt;
+  add(model_file_name);
+  add(stem);
+  if (stem.starts_with('m') && all_digits(stem.substr(1))) add(stem.substr(1));
+  return found;
+}
+
+std::optional<std::size_t> Labels::find_index(std::string_view model_file_name) const {
+  const std::vector<std::size_t> found = find_all(model_file_name);
+  return found.empty() ? std::nullopt : std::optional(found.front());
 }
 
 std::optional<ModelLabel> Labels::find(std::string_view model_file_name) const {
   const auto index = find_index(model_file_name);
   return index ? std::optional(sorted_[*index].second) : std::nullopt;
+}
+
+UnsharedClasses unshared_classes(const std::optional<Classification>& train,
+                                 const std::optional<Classification>& test) {
+  if (!train || !test) return {};
+  const auto with_models = [](const Classification& from) {
+    std::set<std::string> paths;
+    for (std::size_t i = 0; i < from.classes.size(); ++i)
+      if (!from.classes[i].models.empty()) paths.insert(from.path(static_cast<int>(i)));
+    return paths;
+  };
+  const std::set<std::string> in_train = with_models(*train), in_test = with_models(*test);
+  UnsharedClasses unshared;
+  for (const std::string& path : in_train)
+    if (!in_test.contains(path)) unshared.classes.push_back(path + " (train)");
+  unshared.of = in_train.size();
+  for (const std::string& path : in_test) {
+    if (in_train.contains(path)) continue;
+    unshared.classes.push_back(path + " (test)");
+    ++unshared.of;
+  }
+  std::sort(unshared.classes.begin(), unshared.classes.end());
+  return unshared;
 }
 
 std::vector<std::string> class_paths(const std::optional<Classification>& train,

@@ -50,6 +50,15 @@ struct ModelLabel {
   bool operator==(const ModelLabel&) const = default;
 };
 
+/// Classes that have models in one of two class files and none in the other: what is left where a
+/// class was renamed in one of them.
+struct UnsharedClasses {
+  std::vector<std::string> classes;  ///< "vehicle/car (train)", sorted; of absent files: none
+  std::size_t of = 0;                ///< classes with models in either; 0 where one is absent
+};
+UnsharedClasses unshared_classes(const std::optional<Classification>& train,
+                                 const std::optional<Classification>& test);
+
 /// Class and split of a model by its file name.
 class Labels {
  public:
@@ -64,9 +73,12 @@ class Labels {
   std::optional<ModelLabel> find(std::string_view model_file_name) const;
   /// Which of the entries `find` would use, below size().
   std::optional<std::size_t> find_index(std::string_view model_file_name) const;
+  /// All entries that mean the file: the one that `find` uses, and then those it goes before.
+  std::vector<std::size_t> find_all(std::string_view model_file_name) const;
   std::size_t size() const { return sorted_.size(); }
   /// What the class file calls the entry of that index.
   const std::string& name(std::size_t index) const { return sorted_.at(index).first; }
+  const ModelLabel& label(std::size_t index) const { return sorted_.at(index).second; }
 
  private:
   std::optional<std::size_t> index_of(std::string_view key) const;

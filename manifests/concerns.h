@@ -15,6 +15,7 @@ namespace ds {
 ///   picture_white    pictures of which over a quarter of the pixels are clipped in every channel
 ///   models_absent    models that the class files list and that have no file
 ///   models_unlisted  model files that no class file lists, where there is one
+///   classes_unshared  classes that have models in one of the class files and none in the other
 ///   classes_empty    classes of the class files, and classes above them, that no image is of
 ///   assets_unphysical  material files and environments with a surface that gives back more light
 ///                    than it gets, or another value that no real surface has

@@ -27,6 +27,8 @@ constexpr ConcernText k_texts[] = {
     {"models_absent", "models that the class files list have no file",
      "classes.missing = \"ignore\""},
     {"models_unlisted", "model files stand in no class file", "classes.unlisted = \"keep\""},
+    {"classes_unshared", "classes have models in one of the class files only",
+     "classes.unshared = \"keep\""},
     {"classes_empty", "classes have no image", "classes.missing = \"ignore\""},
     {"splits_empty", "splits have no image"},
     {"assets_unphysical", "materials and environments have values that no real surface has", "",
@@ -60,7 +62,8 @@ std::string way_out(const Concern& concern) {
 bool is_allowed(const Concern& concern, const ClassCoverage& coverage) {
   return ((concern.name == "models_absent" || concern.name == "classes_empty") &&
           coverage.missing_allowed) ||
-         (concern.name == "models_unlisted" && coverage.unlisted_allowed);
+         (concern.name == "models_unlisted" && coverage.unlisted_allowed) ||
+         (concern.name == "classes_unshared" && coverage.unshared_allowed);
 }
 
 }  // namespace

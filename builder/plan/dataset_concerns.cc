@@ -44,6 +44,11 @@ void look_at_labels(std::vector<Concern>& concerns, const Recipe& recipe,
   Concern& unlisted = concern(concerns, "models_unlisted");
   unlisted = {unlisted.name, recipe.coverage.unlisted, recipe.coverage.files,
               recipe.coverage.unlisted_examples};
+  const UnsharedClasses& found = recipe.coverage.unshared;
+  Concern& unshared = concern(concerns, "classes_unshared");
+  unshared.of = found.of;
+  for (const std::string& path : found.classes)
+    add_example(unshared, path);
   // An image is of its class and of those above it.
   std::set<std::string, std::less<>> seen;
   for (const std::vector<ImageFacts>* list : {&images, &pending})

@@ -191,7 +191,7 @@ void compare_concerns(std::vector<Concern> before, std::vector<Concern> after,
     return;
   }
   for (const char* name :
-       {"models_absent", "models_unlisted", "assets_unphysical",
+       {"models_absent", "models_unlisted", "classes_unshared", "assets_unphysical",
         "sizes_unlikely", "names_by_case", "meshes_damaged", "models_unlikely"}) {
     const std::uint64_t old_count = concern(before, name).count;
     const std::uint64_t new_count = concern(after, name).count;

@@ -336,8 +336,7 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
   std::vector<std::string> unlikely;
   plan.concerns = {count_unphysical(plan.images, inputs),
                    find_unlikely_sizes(dataset.recipe, plan.images, inputs, unlikely),
-                   count_names_by_case(plan.images),
-                   count_damaged(plan.images, inputs),
+                   count_names_by_case(plan.images), count_damaged(plan.images, inputs),
                    find_unlikely_properties(dataset.recipe, plan.images, inputs, unlikely)};
   for (const std::string& line : unlikely)
     warn(line);

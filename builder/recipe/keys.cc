@@ -84,6 +84,10 @@ constexpr std::array k_keys = {
             R"("keep" | "skip" | "error")", "",
             "A model file that no class file lists: build it with class and split \"\", leave it "
             "out, or fail"},
+    KeySpec{
+        "classes.unshared", manifest, choice, "", "\"keep\"", k_any, R"("keep" | "error")", "",
+        "A class that has models in one of the two class files only, as where it was renamed in "
+        "one: count it, or fail"},
 
     KeySpec{"materials.dir", images, path, "", "", k_any, "", "",
             "Folder of materials: its .mat files. Either this or materials.files must be given; "

@@ -136,6 +136,25 @@ std::string some_of(const std::vector<std::string>& names) {
   return text;
 }
 
+/// An entry that no model uses, since another one means the same file, must not tell something else.
+void refuse_second_labels(const Settings& settings, const Recipe& recipe,
+                          const std::set<std::size_t>& used) {
+  const Labels& labels = recipe.labels;
+  const auto text = [&](std::size_t entry) {
+    const ModelLabel& label = labels.label(entry);
+    return fmt::format("{} ({}, {})", labels.name(entry), label.class_path, label.split);
+  };
+  for (const fs::path& model : recipe.models) {
+    const std::vector<std::size_t> entries = labels.find_all(model.filename().string());
+    for (std::size_t i = 1; i < entries.size(); ++i)
+      if (!used.contains(entries[i]) && labels.label(entries[i]) != labels.label(entries[0]))
+        settings.complain(
+            labels.label(entries[0]).split == "test" ? "classes.test" : "classes.train",
+            fmt::format("must list {} once, found {} and {}", model.filename().string(),
+                        text(entries[0]), text(entries[i])));
+  }
+}
+
 /// Compares the class files with the models found, and does about the differences what the recipe
 /// says.
 void match_labels(const Settings& settings, Recipe& recipe) {
@@ -164,6 +183,7 @@ void match_labels(const Settings& settings, Recipe& recipe) {
     if (!used.contains(i)) coverage.missing_examples.push_back(recipe.labels.name(i));
   coverage.missing_allowed = settings.given("classes.missing");
   coverage.unlisted_allowed = settings.given("classes.unlisted");
+  refuse_second_labels(settings, recipe, used);
   const std::string& wanted = settings.text("classes.unlisted");
   if (wanted == "error" && !unlisted.empty()) {
     settings.complain(
@@ -207,7 +227,17 @@ void read_classification_section(Settings& settings, Recipe& recipe) {
   } catch (const Error& error) {
     add_findings(error, diagnostics);
   }
-  if (has_files && diagnostics.empty()) match_labels(settings, recipe);
+  if (!has_files || !diagnostics.empty()) return;
+  recipe.coverage.unshared = unshared_classes(train, test);
+  recipe.coverage.unshared_allowed = settings.given("classes.unshared");
+  if (settings.text("classes.unshared") == "error" && !recipe.coverage.unshared.classes.empty()) {
+    settings.complain(
+        "classes.unshared",
+        fmt::format("= \"error\" wants the same classes in both class files, found in "
+                    "one of them only: {}",
+                    some_of(recipe.coverage.unshared.classes)));
+  }
+  match_labels(settings, recipe);
 }
 
 /// With "all", a name becomes part of a picture's stem, and what stands before a stem's first dot

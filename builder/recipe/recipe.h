@@ -50,8 +50,9 @@ struct ClassCoverage {
   std::size_t files = 0;     ///< model files, where there are class files
   std::size_t unlisted = 0;  ///< of these, the ones that no class file lists
   std::vector<std::string> missing_examples, unlisted_examples;  ///< the first few names
-  /// The recipe itself says that they may be, with classes.missing and classes.unlisted.
-  bool missing_allowed = false, unlisted_allowed = false;
+  UnsharedClasses unshared;
+  /// The recipe itself says that they may be, with classes.missing, .unlisted and .unshared.
+  bool missing_allowed = false, unlisted_allowed = false, unshared_allowed = false;
 };
 
 /// A recipe read, checked and with every default filled in. Paths are absolute. What each key

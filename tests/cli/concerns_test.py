@@ -7,8 +7,9 @@ import zlib
 from harness import IMAGES, TinyCase, main
 
 NONE = {name: 0 for name in ("mask_empty", "mask_at_frame", "mask_small", "picture_black", "picture_white",
-                             "models_absent", "models_unlisted", "classes_empty", "splits_empty",
-                             "assets_unphysical", "sizes_unlikely", "names_by_case", "meshes_damaged", "models_unlikely")}
+                             "models_absent", "models_unlisted", "classes_unshared", "classes_empty", "splits_empty",
+                             "assets_unphysical", "sizes_unlikely", "names_by_case", "meshes_damaged",
+                             "models_unlikely")}
 
 
 def grey_png(path):
@@ -187,6 +188,16 @@ class ConcernsTest(TinyCase):
         run = self.run_it("build", self.recipe, "-o", self.out, "-k")
         self.assertEqual(run.code, 1, run)
         self.assertEqual(run.err.count("indices run from 1 to 4, the number of its vertices"), 1, run.err)
+
+    def test_classes_of_one_file_only(self):
+        (self.tiny / "train.cla").write_text("PSB 1\n1 1\nbox 0 1\nbox\n")
+        (self.tiny / "test.cla").write_text("PSB 1\n1 1\ncrate 0 1\ntetra\n")
+        self.edit("recipe.toml", "[materials]", '[classes]\ntrain = "train.cla"\ntest = "test.cla"\n\n[materials]')
+        concerns, err = self.concerns()
+        self.assertEqual(concerns["classes_unshared"], 2)
+        self.assertIn("2 of 2 classes have models in one of the class files only: box (train), crate (test)", err)
+        self.concerns("--strict", code=1)
+        self.assertEqual(self.concerns("--set", "classes.unshared=keep", "--strict")[1].count("warning"), 0)
 
     def test_pictures_that_are_all_white(self):
         concerns, err = self.concerns("--set", "outputs.tone_map=linear", "--set", "outputs.tone_map_scale=1000")

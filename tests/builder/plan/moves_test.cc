@@ -115,6 +115,7 @@ std::vector<Flip> Moving::flips() const {
       {"classes.split.test", "0.1", "0.9"},
       {"classes.missing", "\"ignore\"", "\"error\"", {"classes.train=" + path("all.cla")}},
       {"classes.unlisted", "\"keep\"", "\"skip\"", {"classes.train=" + path("box.cla")}},
+      {"classes.unshared", "\"keep\"", "\"error\"", {"classes.train=" + path("box.cla")}},
       {"materials.dir", path("materials"), path("few_materials")},
       {"materials.files", paths("materials/red.mat"), paths("materials/green.mat")},
       {"materials.assign", "\"cycle\"", "\"all\""},

@@ -82,6 +82,31 @@ TEST_F(RecipeClassesTest, ReportTheirOwnFindingsAmongTheRecipes) {
             "r.toml:4:17: classes.train must name a file, found none at none.cla");
 }
 
+TEST_F(RecipeClassesTest, ThatHaveModelsInOneFileOnlyAreCounted) {
+  folder_.add("train.cla", "PSB 1\n3 2\nthing 0 0\ncar thing 1\ncar\nmug 0 1\n12\n");
+  folder_.add("test.cla", "PSB 1\n3 2\nthing 0 0\nautomobile thing 1\n13\nmug 0 1\n14\n");
+  const ClassCoverage coverage = folder_.read(k_both).coverage;
+  EXPECT_THAT(coverage.unshared.classes,
+              ElementsAre("thing/automobile (test)", "thing/car (train)"));
+  EXPECT_EQ(coverage.unshared.of, 3u);
+  EXPECT_FALSE(coverage.unshared_allowed);
+  EXPECT_TRUE(folder_.read(both("classes.unshared = \"keep\"")).coverage.unshared_allowed);
+  EXPECT_EQ(folder_.findings(both("classes.unshared = \"error\"")),
+            "r.toml:6:20: classes.unshared = \"error\" wants the same classes in both class files, "
+            "found in one of them only: thing/automobile (test), thing/car (train)");
+  EXPECT_EQ(folder_.read(k_both, {"classes.test=\"\""}).coverage.unshared.of, 0u);
+}
+
+TEST_F(RecipeClassesTest, OfOneModelAgreeWhateverItIsCalled) {
+  folder_.add("test.cla", "PSB 1\n1 1\nplant 0 1\ncar.ply\n");
+  EXPECT_THAT(folder_.findings(k_both),
+              HasSubstr("classes.test must list car.ply once, found car.ply (plant, test) and car "
+                        "(thing/vehicle, train)"));
+  // The name without an ending is another file's.
+  folder_.add("models/car.off");
+  EXPECT_EQ(folder_.findings(k_both), "");
+}
+
 TEST_F(RecipeClassesTest, MayLieBesideTheModels) {
   constexpr std::string_view k_beside =
       "materials.dir = \"materials\"\nenvironments.dir = \"places\"\nclasses.train = "
