@@ -50,7 +50,7 @@ INSTANTIATE_TEST_SUITE_P(
                  types(texture_section())},
         Case{"scene.materials.a.type = matte\nscene.materials.a.ks = 1",
              "m.scn:2: scene.materials.a.ks is unknown to a material of type matte; it has kd, "
-             "emission"},
+             "emission, id"},
         Case{"scene.materials.a.kd = 1\nscene.materials.a.bumptex = t",
              "m.scn:2: scene.materials.a.bumptex = t is not supported yet"},
         Case{"scene.materials.a.kd = 1\nscene.materials.a.transparency = 0.5",
@@ -232,11 +232,11 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"scene.materials.a.kr = 1\nscene.materials.a.kt = 1\n"
              "scene.materials.a.interiorior = 1.3",
              "m.scn:1: scene.materials.a.kr (and kt, interiorior) is unknown to a material of type "
-             "matte, which it is without a type; it has kd, emission"},
+             "matte, which it is without a type; it has kd, emission, id"},
         Case{"scene.material.a.type = matte\nscene.material.a.kd = 0.5\nscene.material.a.ks = 1",
              "m.scn:1: scene.material is no section of a scene, did you mean scene.materials?\n"
              "m.scn:3: scene.materials.a.ks is unknown to a material of type matte; it has kd, "
-             "emission"},
+             "emission, id"},
         Case{"scene.text = a\nscene.epsilom = 1\nscene.materials.a.kd = 1",
              "m.scn:1: scene.text is unknown\nm.scn:2: scene.epsilom is unknown"},
         Case{"scene.materials.a.type = metal2\nscene.materials.a.uroughnes = 0.1\n"

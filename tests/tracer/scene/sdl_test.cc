@@ -380,11 +380,14 @@ TEST(Canonical, EnvironmentDoesNotDependOnTheOrderOfTheFile) {
   for (const char* change :
        {"scene.lights.lamp.position = 0 0 3.0001\n", "scene.lights.lamp.gain = 1 1 1.1\n",
         "scene.lights.sun.turbidity = 3\n", "scene.lights.sun.relsize = 2\n",
-        "scene.lights.sun.dir = 0 0.5 0.6\n", "scene.objects.square.id = 2\n",
-        "scene.objects.square.camerainvisible = 1\n", "scene.materials.body.kd = 0.7\n",
+        "scene.lights.sun.dir = 0 0.5 0.6\n", "scene.objects.square.camerainvisible = 1\n",
+        "scene.materials.body.kd = 0.7\n",
         "scene.objects.square.vertices = -1 -1 0  1 -1 0  1 1 0  -1 1 0.001\n",
         "scene.lights.sky.type = sky2\n"})
     EXPECT_NE(environment_text(folder, body + square + lamp + sun + change), wanted) << change;
+  // Ids are read by planes alone.
+  EXPECT_EQ(environment_text(folder, body + square + lamp + sun + "scene.objects.square.id = 2\n"),
+            wanted);
 }
 
 TEST(Canonical, ColoursOfAnObjectCountWhereItsMaterialReadsThem) {
