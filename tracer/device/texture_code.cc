@@ -104,14 +104,14 @@ class Emitter {
     begin(static_cast<std::uint32_t>(kernels::op_texture + texture.type));
     code_.op_words.push_back(start_);
     code_.types.push_back(texture.type);
+    const NodeType& type = texture_types()[static_cast<std::size_t>(texture.type)];
+    emit_transform(texture, reads_uvs(type));
     if (texture.image >= 0) {
       emit_image(texture);
     } else {
-      for (std::size_t i = 0; i < 12; ++i)
-        code_.words.push_back(word_of(static_cast<float>(texture.world_to_texture.m[i])));
       for (const float number : texture.numbers)
         code_.words.push_back(word_of(number));
-      if (reads_colors(texture_types()[static_cast<std::size_t>(texture.type)])) {
+      if (reads_colors(type)) {
         code_.color_words.push_back(code_.words.size());
         code_.words.push_back(0);
       }
@@ -119,10 +119,18 @@ class Emitter {
     end();
   }
 
-  void emit_image(const Texture& texture) {
+  void emit_transform(const Texture& texture, bool of_uvs) {
+    if (!of_uvs) {
+      for (std::size_t i = 0; i < kernels::k_instruction_transform; ++i)
+        code_.words.push_back(word_of(static_cast<float>(texture.world_to_texture.m[i])));
+      return;
+    }
     for (const float number : texture.uv_transform)
       code_.words.push_back(word_of(number));
     code_.words.insert(code_.words.end(), kernels::k_instruction_transform - 6, 0);
+  }
+
+  void emit_image(const Texture& texture) {
     const Image& image = scene_.images[static_cast<std::size_t>(texture.image)];
     code_.image_words.push_back(code_.words.size());
     code_.words.push_back(static_cast<std::uint32_t>(texture.image));

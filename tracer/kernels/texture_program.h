@@ -14,7 +14,7 @@
 //                                    input), push its value
 //
 // word 0 is the operation, word 1 the instruction's length in words. `transform` is a 3x4 row-major
-// world-to-texture matrix, or for an image [a b c; d e f] of (s, t) = [..] (u, v, 1) in its first
+// world-to-texture matrix, or for one of uvs [a b c; d e f] of (s, t) = [..] (u, v, 1) in its first
 // six words. DS_TEXTURES(X) is the scene's own list: X(name, number), see device/program_text.cc.
 #pragma once
 

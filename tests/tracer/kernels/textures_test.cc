@@ -257,7 +257,27 @@ TEST(Checkerboard, KnownCellsOfUvs) {
   EXPECT_FALSE(even(0.5f, 7.5f));
   EXPECT_TRUE(even(1.5f, 1.5f));
   EXPECT_FALSE(even(-0.5f, 0.5f));
-  EXPECT_TRUE(even(-0.5f, -3.5f));
+  EXPECT_TRUE(even(-0.5f, -2.5f));
+}
+
+TEST(Checkerboard, TheMappingOfUvsIsApplied) {
+  const auto value = [](float u, float v) {
+    return value_of(
+               [](Scene& s) {
+                 const int index = constant_texture(s, "checkerboard2d", {{1, 1, 1}, {0, 0, 0}});
+                 float* const t = s.textures.back().uv_transform;
+                 t[0] = 4;  // s = 4 u
+                 t[4] = 2;  // t = 2 v + 0.5
+                 t[5] = 0.5f;
+                 return index;
+               },
+               {vec(0.3f, 0.4f, 0.5f), u, v, 0, 0, 0})
+        .x;
+  };
+  EXPECT_EQ(value(0.1f, 0.1f), 1);
+  EXPECT_EQ(value(0.3f, 0.1f), 0);
+  EXPECT_EQ(value(0.1f, 0.3f), 0);
+  EXPECT_EQ(value(0.3f, 0.3f), 1);
 }
 
 TEST(Checkerboard, TheMappingIsApplied) {
@@ -431,9 +451,12 @@ TEST(Textures, ReadWhatTheirTraitsSay) {
     }
     EXPECT_EQ(by_position, has_trait(type, k_trait_position)) << type.name;
     other = from;
-    other.u = 0.4f;
-    other.v = 0.9f;
-    EXPECT_EQ(changes(other, from), has_trait(type, k_trait_uv)) << type.name;
+    bool by_uv = false;
+    for (int i = 1; i < 50; ++i) {
+      other.u = from.u + 0.37f * static_cast<float>(i);
+      by_uv = by_uv || changes(other, from);
+    }
+    EXPECT_EQ(by_uv, has_trait(type, k_trait_uv)) << type.name;
     other = from;
     other.colors = 0;
     EXPECT_EQ(changes(other, from), has_trait(type, k_trait_colors)) << type.name;
