@@ -108,10 +108,16 @@ const Inputs::ModelFacts& Inputs::model(const std::filesystem::path& file) {
 }
 
 Mesh Inputs::model_mesh(const std::filesystem::path& file, const NormaliseOptions& options) {
+  constexpr std::size_t k_most_kept_triangles = 2'000'000;
+  const Hash128 part = hash_text(canonical_model(model_hashes(file), {true, true, true}, options));
+  if (last_mesh_ && last_mesh_->file == file && last_mesh_->part == part) return last_mesh_->mesh;
+  last_mesh_.reset();
   const Model model = read_model(file);
   if (mesh_hashes(model.mesh) != model_hashes(file))
     fail(ErrorKind::asset, "{}: the model changed while the dataset was built", file.string());
-  return normalise(model.mesh, options);
+  Mesh mesh = normalise(model.mesh, options);
+  if (mesh.triangles.size() <= k_most_kept_triangles) last_mesh_ = LastMesh{file, part, mesh};
+  return mesh;
 }
 
 const Sphere& Inputs::model_sphere(const std::filesystem::path& file,

@@ -49,7 +49,7 @@ class Inputs {
   /// Of the file's coordinates; throws likewise.
   const Box& model_box(const std::filesystem::path& file) { return model(file).box; }
   /// Reads and normalises. Throws Error(asset) where the file is no longer the one `model_hashes`
-  /// saw.
+  /// saw. The last one is kept: images of one model in several environments follow each other.
   Mesh model_mesh(const std::filesystem::path& file, const NormaliseOptions& options);
   /// As read_material and read_environment give them; what pixels of their images tell is among
   /// what their materials have of unphysical, and was warned of.
@@ -112,6 +112,12 @@ class Inputs {
   };
   std::vector<NewContent> new_contents_;
   std::vector<NewModel> new_models_;
+  struct LastMesh {
+    std::filesystem::path file;
+    Hash128 part;  ///< of the model part
+    Mesh mesh;
+  };
+  std::optional<LastMesh> last_mesh_;
   Known<Sphere> spheres_;
   std::map<Hash128, Sphere> new_spheres_;      ///< by the hash of the model part
   std::map<Hash128, InputBounds> new_bounds_;  ///< by the hash of the image and its use

@@ -133,18 +133,21 @@ RTCBuildQuality embree_quality(BvhQuality quality) {
 /// Beyond any tree that splitting by cost makes of real meshes; deeper ones Embree refuses.
 constexpr unsigned k_most_levels = 128;
 
-/// Embree's device and the memory of one build.
+/// One for all builds and threads, and to the end of the process: making it takes as long as a
+/// small tree.
+RTCDevice shared_device() {
+  static const RTCDevice device = rtcNewDevice("");
+  if (device == nullptr) fail(ErrorKind::device, "embree: no device can be made");
+  return device;
+}
+
+/// The memory of one build.
 class Builder {
  public:
-  Builder() : device_(rtcNewDevice("")) {
-    if (device_ == nullptr) fail(ErrorKind::device, "embree: no device can be made");
-    bvh_ = rtcNewBVH(device_);
+  Builder() : device_(shared_device()), bvh_(rtcNewBVH(device_)) {
     if (bvh_ == nullptr) fail_embree();
   }
-  ~Builder() {
-    rtcReleaseBVH(bvh_);
-    rtcReleaseDevice(device_);
-  }
+  ~Builder() { rtcReleaseBVH(bvh_); }
   Builder(const Builder&) = delete;
   Builder& operator=(const Builder&) = delete;
 
@@ -180,15 +183,15 @@ class Builder {
          static_cast<int>(rtcGetDeviceError(device_)));
   }
   RTCDevice device_;
-  RTCBVH bvh_ = nullptr;
+  RTCBVH bvh_;
 };
 
-Box box_of(const RTCBounds& b) {
+NodeBox box_of(const RTCBounds& b) {
   return {{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
 }
 
 /// Writes the node and what is below; returns its place.
-std::uint32_t append(const BuildNode& node, const Box& bounds, std::vector<BinaryNode>& tree) {
+std::uint32_t append(const BuildNode& node, const NodeBox& bounds, std::vector<BinaryNode>& tree) {
   BinaryNode entry{.bounds = bounds};
   if (node.is_leaf) {
     entry.triangle = node.triangle;
@@ -209,7 +212,7 @@ std::vector<BinaryNode> build_binary_tree(std::span<const Corners> triangles, Bv
   std::vector<RTCBuildPrimitive> primitives;
   // Room for the pieces of split triangles.
   primitives.reserve(triangles.size() * 2);
-  Box bounds = {{k_infinity, k_infinity, k_infinity}, {-k_infinity, -k_infinity, -k_infinity}};
+  NodeBox bounds = {{k_infinity, k_infinity, k_infinity}, {-k_infinity, -k_infinity, -k_infinity}};
   for (const Corners& c : triangles) {
     primitives.push_back(primitive_of(c, static_cast<unsigned>(primitives.size())));
     const RTCBuildPrimitive& p = primitives.back();

@@ -11,7 +11,7 @@
 namespace ds {
 
 /// An axis-aligned box; empty where low is above high.
-struct Box {
+struct NodeBox {
   std::array<float, 3> low, high;
   /// Half its surface: what a random ray's chance of meeting it is proportional to.
   float half_area() const {
@@ -22,7 +22,7 @@ struct Box {
 
 /// A node of a tree whose leaves hold one triangle each.
 struct BinaryNode {
-  Box bounds;
+  NodeBox bounds;
   std::uint32_t left = 0, right = 0;  ///< places in the tree; of a leaf both are its own place
   std::uint32_t triangle = 0;         ///< of a leaf
   std::uint32_t leaf_count = 1;       ///< leaves below, itself counted

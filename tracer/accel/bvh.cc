@@ -2,6 +2,8 @@
 #include "tracer/accel/bvh.h"
 
 #include "tracer/accel/binary_tree.h"
+#include "tracer/accel/tree_cache.h"
+#include "tracer/accel/tree_join.h"
 #include "tracer/base/error.h"
 #include "tracer/kernels/layout.h"
 
@@ -123,7 +125,7 @@ class Flattener {
     } else {
       write_node(root, 1);
     }
-    const Box& bounds = tree_[root].bounds;
+    const NodeBox& bounds = tree_[root].bounds;
     std::copy(bounds.low.begin(), bounds.low.end(), bvh_.nodes.begin() + k_root_bounds * k_width);
     std::copy(bounds.high.begin(), bounds.high.end(),
               bvh_.nodes.begin() + k_root_bounds * k_width + 3);
@@ -159,7 +161,7 @@ class Flattener {
     return at;
   }
 
-  void set_child(std::size_t at, std::size_t i, const Box& b, std::uint32_t reference) {
+  void set_child(std::size_t at, std::size_t i, const NodeBox& b, std::uint32_t reference) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       bvh_.nodes[at + 2 * axis * k_width + i] = b.low[axis];
       bvh_.nodes[at + (2 * axis + 1) * k_width + i] = b.high[axis];
@@ -209,6 +211,22 @@ Bvh build_bvh(std::span<const Corners> triangles, BvhQuality quality, int width)
   DS_ASSERT(width >= k_least_bvh_width && width <= k_most_bvh_width);
   const std::vector<BinaryNode> tree = build_binary_tree(triangles, quality);
   return Flattener(tree, triangles, static_cast<std::size_t>(width)).run();
+}
+
+Bvh build_joined_bvh(std::span<const Corners> triangles, std::size_t first_count,
+                     BvhQuality quality, int width, TreeCache& cache) {
+  DS_ASSERT(width >= k_least_bvh_width && width <= k_most_bvh_width);
+  DS_ASSERT(first_count <= triangles.size());
+  const auto wide = static_cast<std::size_t>(width);
+  if (first_count == 0 || first_count == triangles.size()) {
+    const auto whole = cache.get(triangles, quality);
+    return Flattener(*whole, triangles, wide).run();
+  }
+  const auto first = cache.get(triangles.first(first_count), quality);
+  const auto second = cache.get(triangles.subspan(first_count), quality);
+  const std::vector<BinaryNode> tree =
+      join_trees(*first, *second, static_cast<std::uint32_t>(first_count));
+  return Flattener(tree, triangles, wide).run();
 }
 
 }  // namespace ds

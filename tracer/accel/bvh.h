@@ -29,4 +29,12 @@ inline constexpr int k_least_bvh_width = 2, k_most_bvh_width = 8;
 Bvh build_bvh(std::span<const std::array<Vec3, 3>> triangles,
               BvhQuality quality = BvhQuality::medium, int width = k_most_bvh_width);
 
+class TreeCache;
+
+/// The same tree of triangles that come from two places, the first `first_count` from one: trees of
+/// each, from the cache, are joined, which is quicker where one of them is known and gives a tree
+/// that rays pass about as quickly. One tree where either has none.
+Bvh build_joined_bvh(std::span<const std::array<Vec3, 3>> triangles, std::size_t first_count,
+                     BvhQuality quality, int width, TreeCache& cache);
+
 }  // namespace ds

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tracer/base/canonical.h"
 #include "tracer/device/pack_rows.h"
 #include "tracer/kernels/all_nodes.h"
 
@@ -79,24 +80,24 @@ std::optional<std::uint32_t> shared_exponent_word(const float* rgb) {
   return word;
 }
 
-/// Offset of the image's texels as words, or nothing where one does not fit.
-std::optional<std::uint32_t> add_shared_exponents(const Image& image, Words& tables) {
+/// The image's texels as words; nothing where one does not fit.
+std::vector<std::uint32_t> shared_exponents(const Image& image) {
   std::vector<std::uint32_t> words;
+  words.reserve(image.rgb.size() / 3);
   for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
     const std::optional<std::uint32_t> word = shared_exponent_word(&image.rgb[i]);
-    if (!word) return std::nullopt;
+    if (!word) return {};
     words.push_back(*word);
   }
-  const std::uint32_t offset = tables.offset();
-  for (const std::uint32_t word : words)
-    tables.add(word);
-  return offset;
+  return words;
 }
 
-}  // namespace
-
-LightRow infinite_row(const Scene& scene, const Light& light, double scene_radius, Words& tables) {
-  const Image& image = scene.images[static_cast<std::size_t>(light.image)];
+InfiniteTables tables_of(const Image& image) {
+  InfiniteTables result;
+  Words words;
+  for (const std::uint32_t word : shared_exponents(image))
+    words.add(word);
+  result.has_texels = words.offset() > 0;
   const Cells cells = cells_of(image);
   const auto w = static_cast<std::size_t>(image.width);
   const auto h = static_cast<std::size_t>(image.height);
@@ -104,44 +105,80 @@ LightRow infinite_row(const Scene& scene, const Light& light, double scene_radiu
     const auto begin = cells.weights.begin() + static_cast<std::ptrdiff_t>(r * w);
     return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(w));
   };
-  LightRow result{"infinite", 0, {}};
-  Words& p = result.parameters;
-  p.add(static_cast<std::uint32_t>(image.width));
-  p.add(static_cast<std::uint32_t>(image.height));
-  const std::optional<std::uint32_t> words = add_shared_exponents(image, tables);
-  p.add(words ? *words : texel_offset(scene, light.image));
-  p.add(words ? std::uint32_t{1} : std::uint32_t{0});
-  p.add(light.color);
-  p.add(tables.offset());
+  result.rows = words.offset();
   std::vector<double> rows;
   for (std::size_t r = 0; r <= h; ++r) {
     const std::vector<double> row = row_weights(r);
     rows.push_back(std::accumulate(row.begin(), row.end(), 0.0));
   }
-  add_cumulative(rows, tables);
+  add_cumulative(rows, words);
   const double cell_angle =
       (2 * std::numbers::pi / image.width) * (std::numbers::pi / image.height);
-  p.add(tables.offset());
+  result.weight = cells.total * cell_angle;
+  result.sines = words.offset();
   for (const double sine : cells.sines)
-    tables.add(cells.total > 0 ? static_cast<float>(sine / (cells.total * cell_angle)) : 0.0f);
+    words.add(cells.total > 0 ? static_cast<float>(sine / (cells.total * cell_angle)) : 0.0f);
   constexpr std::size_t block = kernels::k_column_block;
   const std::size_t blocks = (w + block - 1) / block;
-  const std::uint32_t columns = tables.offset();
-  p.add(columns);
+  result.columns = words.offset();
   for (std::size_t r = 0; r <= h; ++r) {
     std::vector<double> row = row_weights(r);
     row.resize(blocks * block, 0.0);
-    add_cumulative(row, tables);
+    add_cumulative(row, words);
   }
-  p.add(tables.offset());
+  result.blocks = words.offset();
   for (std::size_t i = block - 1; i < (h + 1) * blocks * block; i += block)
-    tables.add(std::uint32_t{tables.words()[columns + i]});
+    words.add(std::uint32_t{words.words()[result.columns + i]});
+  result.words = words.words();
+  return result;
+}
+
+}  // namespace
+
+std::shared_ptr<const InfiniteTables> PackCache::infinite(const Image& image) {
+  CanonicalText use;
+  use.add("width", image.width);
+  use.add("pixels", hash_bytes(std::as_bytes(std::span(image.rgb))).hex());
+  const Hash128 key = hash_text(use.text());
+  const auto found =
+      std::find_if(known_.begin(), known_.end(), [&](const auto& one) { return one.first == key; });
+  if (found != known_.end()) {
+    known_.splice(known_.begin(), known_, found);
+    return known_.front().second;
+  }
+  auto tables = std::make_shared<const InfiniteTables>(tables_of(image));
+  const auto bytes_of = [](const InfiniteTables& of) { return of.words.size() * sizeof(float); };
+  if (bytes_of(*tables) > most_bytes_) return tables;
+  known_.emplace_front(key, tables);
+  for (bytes_ += bytes_of(*tables); bytes_ > most_bytes_; known_.pop_back())
+    bytes_ -= bytes_of(*known_.back().second);
+  return tables;
+}
+
+LightRow infinite_row(const Scene& scene, const Light& light, double scene_radius, PackCache* cache,
+                      Words& tables) {
+  const Image& image = scene.images[static_cast<std::size_t>(light.image)];
+  const auto known = cache != nullptr ? cache->infinite(image)
+                                      : std::make_shared<const InfiniteTables>(tables_of(image));
+  const std::uint32_t base = tables.offset();
+  tables.add(std::span(known->words));
+  LightRow result{"infinite", 0, {}};
+  Words& p = result.parameters;
+  p.add(static_cast<std::uint32_t>(image.width));
+  p.add(static_cast<std::uint32_t>(image.height));
+  p.add(known->has_texels ? base : texel_offset(scene, light.image));
+  p.add(known->has_texels ? std::uint32_t{1} : std::uint32_t{0});
+  p.add(light.color);
+  p.add(base + known->rows);
+  p.add(base + known->sines);
+  p.add(base + known->columns);
+  p.add(base + known->blocks);
   for (std::size_t row = 0; row < 3; ++row)
     for (std::size_t column = 0; column < 3; ++column)
       p.add(static_cast<float>(light.light_to_world.m[column * 4 + row]));
   // What falls on a disc of the scene's radius: power, as for the others.
-  result.weight = cells.total * cell_angle * luminance(light.color) * std::numbers::pi *
-                  scene_radius * scene_radius;
+  result.weight =
+      known->weight * luminance(light.color) * std::numbers::pi * scene_radius * scene_radius;
   return result;
 }
 

@@ -111,7 +111,8 @@ double scene_radius_of(const Scene& scene) {
   return 0.5 * length(high - low);
 }
 
-LightRow light_row(const Scene& scene, const Light& light, double radius, Words& tables) {
+LightRow light_row(const Scene& scene, const Light& light, double radius, PackCache* cache,
+                   Words& tables) {
   switch (light.kind) {
     case LightKind::point:
       return point_row(light);
@@ -122,7 +123,7 @@ LightRow light_row(const Scene& scene, const Light& light, double radius, Words&
     case LightKind::constant_infinite:
       return constant_row(light);
     case LightKind::infinite:
-      return infinite_row(scene, light, radius, tables);
+      return infinite_row(scene, light, radius, cache, tables);
   }
   DS_ASSERT(false);
 }
@@ -133,8 +134,8 @@ bool is_escape(const Features& features, const LightRow& row) {
 
 }  // namespace
 
-void pack_lights(const Scene& scene, const Features& features, PackedScene& packed,
-                 std::vector<std::uint32_t>& mesh_lights) {
+void pack_lights(const Scene& scene, const Features& features, PackCache* cache,
+                 PackedScene& packed, std::vector<std::uint32_t>& mesh_lights) {
   const double radius = scene_radius_of(scene);
   const std::vector<std::uint32_t> first = first_triangles(scene);
   std::vector<LightRow> rows;
@@ -147,7 +148,7 @@ void pack_lights(const Scene& scene, const Features& features, PackedScene& pack
     rows.push_back(mesh_row(scene, object, first[i], packed.tables));
   }
   for (const Light& light : scene.lights)
-    if (shines(light)) rows.push_back(light_row(scene, light, radius, packed.tables));
+    if (shines(light)) rows.push_back(light_row(scene, light, radius, cache, packed.tables));
   std::stable_partition(rows.begin(), rows.end(),
                         [&](const LightRow& row) { return !is_escape(features, row); });
 

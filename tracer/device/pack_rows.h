@@ -24,8 +24,9 @@ void add_cumulative(const std::vector<double>& weights, Words& tables);
 
 /// Row and tables of a lat-long image at infinity (kernels/lights/infinite.h). Texels that a shared
 /// exponent of 8 bits and mantissas of 8 bits hold exactly, as those of .hdr files are, are kept in
-/// one word each.
-LightRow infinite_row(const Scene& scene, const Light& light, double scene_radius, Words& tables);
+/// one word each. `cache` may be null.
+LightRow infinite_row(const Scene& scene, const Light& light, double scene_radius, PackCache* cache,
+                      Words& tables);
 
 /// Rows of colours in the tables (kernels/scene_data.h), and their offset; none where no texture of the
 /// program reads them.

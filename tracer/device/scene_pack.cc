@@ -6,6 +6,7 @@
 #include "tracer/device/texture_code.h"
 #include "tracer/device/ties.h"
 #include "tracer/kernels/all_nodes.h"
+#include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
 
 #include <algorithm>
@@ -74,8 +75,7 @@ std::vector<std::uint32_t> pack_texels(const Scene& scene, Words& tables) {
                                                          static_cast<std::size_t>(image.width) *
                                                          static_cast<std::size_t>(image.height));
     offsets.push_back(tables.offset());
-    for (const float value : image.rgb)
-      tables.add(value);
+    tables.add(std::span(image.rgb));
   }
   return offsets;
 }
@@ -155,20 +155,24 @@ std::vector<std::uint32_t> first_triangles(const Scene& scene) {
 }
 
 PackedScene pack_scene(const Scene& scene, const Features& features, BvhQuality quality,
-                       int bvh_width) {
+                       int bvh_width, PackCache* cache) {
   const std::vector<Corners> corners = all_corners(scene);
   if (corners.empty()) fail(ErrorKind::asset, "the scene has no triangle");
   PackedScene packed;
-  packed.bvh = build_bvh(corners, quality, bvh_width);
+  const std::vector<std::uint32_t> first = first_triangles(scene);
+  // The model comes last (compose), and is all that scenes of one environment differ in.
+  const bool has_model = scene.objects.back().id == k_model_object_id;
+  packed.bvh = cache != nullptr && has_model
+                   ? build_joined_bvh(corners, first.back(), quality, bvh_width, cache->trees)
+                   : build_bvh(corners, quality, bvh_width);
   const std::vector<std::uint32_t> texels = pack_texels(scene, packed.tables);
   const std::uint32_t colors = pack_colors(scene, features, packed.tables);
   pack_materials(scene, features, texels, colors, packed);
   std::vector<std::uint32_t> mesh_lights;
-  pack_lights(scene, features, packed, mesh_lights);
+  pack_lights(scene, features, cache, packed, mesh_lights);
   const Ties ties = find_ties(scene, corners, packed.bvh);
   std::copy(ties.low.begin(), ties.low.end(), packed.data.tie_low);
   std::copy(ties.high.begin(), ties.high.end(), packed.data.tie_high);
-  const std::vector<std::uint32_t> first = first_triangles(scene);
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
     pack_object(scene.objects[i], mesh_lights[i], ties.flags.data() + first[i], packed.triangles);
   return packed;

@@ -2,12 +2,18 @@
 #pragma once
 
 #include "tracer/accel/bvh.h"
+#include "tracer/accel/tree_cache.h"
 #include "tracer/device/program_text.h"
 #include "tracer/kernels/layout.h"
 #include "tracer/scene/scene.h"
 
 #include <bit>
 #include <cstdint>
+#include <cstring>
+#include <list>
+#include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace ds {
@@ -17,6 +23,14 @@ class Words {
  public:
   void add(float value) { words_.push_back(std::bit_cast<std::uint32_t>(value)); }
   void add(std::uint32_t value) { words_.push_back(value); }
+  void add(std::span<const std::uint32_t> words) {
+    words_.insert(words_.end(), words.begin(), words.end());
+  }
+  void add(std::span<const float> values) {
+    const std::size_t before = words_.size();
+    words_.resize(before + values.size());
+    if (!values.empty()) std::memcpy(words_.data() + before, values.data(), values.size_bytes());
+  }
   void add(Vec3 v) {
     add(v.x);
     add(v.y);
@@ -38,19 +52,41 @@ struct PackedScene {
   kernels::SceneData data{};
 };
 
+/// What an image that shines from infinity adds to the tables; offsets are from its first word.
+struct InfiniteTables {
+  std::vector<std::uint32_t> words;
+  bool has_texels = false;  ///< at its start, in one word each
+  std::uint32_t rows = 0, sines = 0, columns = 0, blocks = 0;
+  double weight = 0;  ///< luminance over all directions
+};
+
+/// What packing made for scenes before, and what it depends on is the same: thousands of models
+/// stand in one environment. Changes no word.
+class PackCache {
+ public:
+  explicit PackCache(std::size_t most_bytes) : trees(most_bytes), most_bytes_(most_bytes) {}
+  std::shared_ptr<const InfiniteTables> infinite(const Image& image);
+
+  TreeCache trees;
+
+ private:
+  std::size_t most_bytes_, bytes_ = 0;
+  std::list<std::pair<Hash128, std::shared_ptr<const InfiniteTables>>> known_;  ///< last used first
+};
+
 /// Images must be loaded. `features` gives the numbers of materials, textures and lights: the
 /// scene's own, or all_features(). Throws Error(asset) for a scene without triangles or with what
 /// the tracer cannot hold. `bvh_width`: build_bvh's.
 PackedScene pack_scene(const Scene& scene, const Features& features, BvhQuality quality,
-                       int bvh_width = k_most_bvh_width);
+                       int bvh_width = k_most_bvh_width, PackCache* cache = nullptr);
 
 /// A triangle's row number where objects stand one behind the other: index of the object's first
 /// triangle.
 std::vector<std::uint32_t> first_triangles(const Scene& scene);
 
 /// Appends the lights' rows and tables and fills the light fields of `packed.data`.
-/// `mesh_lights[o]` becomes the row of the light that object o is, or k_none.
-void pack_lights(const Scene& scene, const Features& features, PackedScene& packed,
-                 std::vector<std::uint32_t>& mesh_lights);
+/// `mesh_lights[o]` becomes the row of the light that object o is, or k_none. `cache` may be null.
+void pack_lights(const Scene& scene, const Features& features, PackCache* cache,
+                 PackedScene& packed, std::vector<std::uint32_t>& mesh_lights);
 
 }  // namespace ds

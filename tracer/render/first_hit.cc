@@ -98,16 +98,22 @@ std::vector<Plane> Tracer::trace_planes(const Camera& camera, int width, int hei
       // Any numbering will do: no material is asked.
       Features features = features_of(*s.scene, camera);
       features.lens = false;
-      s.take(pack_scene(*s.scene, features, s.quality(), s.options.bvh_width), features);
+      s.take(pack_scene(*s.scene, features, s.quality(), s.options.bvh_width, &s.pack_cache),
+             features);
     }
     traced = s.launch_planes(s.device_scene, *s.scene, camera, width, height, of_scene);
   }
   if (!of_model.empty()) {
     const Scene alone = model_alone(*s.scene);
     if (has_triangles(alone)) {
-      if (!s.device_model)
-        s.device_model = upload(s.device, pack_scene(alone, features_of(alone, camera), s.quality(),
-                                                     s.options.bvh_width));
+      if (!s.device_model) {
+        DeviceScene model;
+        model.take(s.device,
+                   pack_scene(alone, features_of(alone, camera), s.quality(), s.options.bvh_width,
+                              &s.pack_cache),
+                   s.uploads);
+        s.device_model = model;
+      }
       of_alone = s.launch_planes(*s.device_model, alone, camera, width, height, of_model);
     } else {
       for (const PlaneType* type : of_model)

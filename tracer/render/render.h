@@ -135,8 +135,15 @@ struct RayCounts {
   bool operator==(const RayCounts&) const = default;
 };
 
+/// Tables of scenes that went to the device, and those that were there already.
+struct UploadCounts {
+  std::uint64_t tables = 0, bytes = 0;
+  std::uint64_t kept_tables = 0, kept_bytes = 0;
+};
+
 /// Traces pictures on one device. Not safe from two threads at once; use one a thread.
-/// Keeps the last scene's device data, so many cameras of one scene cost one upload.
+/// Keeps the last scene's device data, so many cameras of one scene cost one upload, and what the
+/// next scene has in common with it none.
 class Tracer {
  public:
   /// Throws Error(device), or Error(usage) for options out of their range.
@@ -147,7 +154,7 @@ class Tracer {
 
   /// Takes the scene (images are loaded), checks its numbers (scene_check.h); trees and programs
   /// are built when the first picture needs them. Throws Error(asset) or Error(device).
-  void set_scene(const Scene& scene);
+  void set_scene(Scene scene);
   /// Path-traces the scene set. Calls `progress` about twice a second; stops early with
   /// Error(cancelled) once `*stop`. `kept` is a film of this very picture that tracing goes on from
   /// where that gives the bits of one go (only samples and target may differ), else it is dropped;
@@ -162,6 +169,7 @@ class Tracer {
   /// program is known already.
   bool prepare_ahead(const Scene& scene, const Camera& camera, const EngineSettings& engine);
   ProgramCounts programs() const;
+  UploadCounts uploads() const;
   /// Of all pictures and geometry traced, where TracerOptions::count_rays was set; else none.
   RayCounts ray_counts() const;
   /// Of these types, in this order; each has the same bits whatever the others are.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/render/film.h"
-#include "tracer/render/images.h"
 #include "tracer/render/picture_launches.h"
 #include "tracer/render/pixel_filter.h"
 #include "tracer/render/render.h"
@@ -35,14 +34,13 @@ bool Tracer::runs_on_cpu() const {
   return state_->device.info().is_cpu;
 }
 
-void Tracer::set_scene(const Scene& scene) {
+void Tracer::set_scene(Scene scene) {
   state_->scene.reset();
   state_->packed_for.reset();
   state_->device_model.reset();
-  Scene checked = scene;
-  load_images(checked);
-  check_scene(checked);
-  state_->scene = std::move(checked);
+  state_->images.load(scene);
+  check_scene(scene);
+  state_->scene = std::move(scene);
 }
 
 void Tracer::prepare(const Camera& camera, const EngineSettings& engine) {
@@ -55,6 +53,10 @@ bool Tracer::prepare_ahead(const Scene& scene, const Camera& camera, const Engin
 
 ProgramCounts Tracer::programs() const {
   return state_->programs.counts();
+}
+
+UploadCounts Tracer::uploads() const {
+  return state_->uploads;
 }
 
 RayCounts Tracer::ray_counts() const {

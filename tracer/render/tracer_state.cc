@@ -20,19 +20,6 @@ std::size_t photons_for(const EngineSettings& engine) {
 
 }  // namespace
 
-DeviceScene upload(const Device& device, const PackedScene& packed) {
-  DeviceScene s;
-  s.nodes = device.upload(packed.bvh.nodes);
-  s.leaves = device.upload(packed.bvh.leaves);
-  s.triangles = device.upload(packed.triangles.words());
-  s.materials = device.upload(packed.materials.words());
-  s.programs = device.upload(packed.programs.words());
-  s.lights = device.upload(packed.lights.words());
-  s.tables = device.upload(packed.tables.words());
-  s.data = device.upload(std::as_bytes(std::span(&packed.data, 1)));
-  return s;
-}
-
 Tracer::State::State(const TracerOptions& o)
     : options(o),
       device(o.device),
@@ -60,7 +47,7 @@ void Tracer::State::prepare(const Camera& camera, const EngineSettings& engine) 
   const std::size_t photons = wanted.guide ? photons_for(engine) : 0;
   const bool lacks_photons = guide_photons != photons && photons > 0 && !packed;
   if (!packed_for || *packed_for != numbering || lacks_photons)
-    take(pack_scene(*scene, wanted, quality(), options.bvh_width), numbering);
+    take(pack_scene(*scene, wanted, quality(), options.bvh_width, &pack_cache), numbering);
   if (guide_photons != photons) {
     guide = device.upload(photons > 0 ? make_guide(photons) : std::vector<std::uint32_t>(1));
     guide_photons = photons;
@@ -74,7 +61,7 @@ void Tracer::State::prepare(const Camera& camera, const EngineSettings& engine) 
 }
 
 void Tracer::State::take(PackedScene scene_words, const Features& numbering) {
-  device_scene = upload(device, scene_words);
+  device_scene.take(device, scene_words, uploads);
   packed_for = numbering;
   guide_photons.reset();
   if (numbering.guide) packed = std::move(scene_words);

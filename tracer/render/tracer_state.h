@@ -5,6 +5,8 @@
 #include "tracer/device/plane_types.h"
 #include "tracer/device/program_text.h"
 #include "tracer/device/scene_pack.h"
+#include "tracer/render/device_scene.h"
+#include "tracer/render/loaded_images.h"
 #include "tracer/render/path_programs.h"
 #include "tracer/render/render.h"
 
@@ -15,11 +17,8 @@
 /// What is behind a Tracer; for tracer/render's own files.
 namespace ds {
 
-/// A scene's tables in device memory.
-struct DeviceScene {
-  Buffer nodes, leaves, triangles, materials, programs, lights, tables, data;
-};
-DeviceScene upload(const Device& device, const PackedScene& packed);
+/// Of images, and of what is made of scenes, that are kept for scenes to come.
+inline constexpr std::size_t k_most_cached_bytes = std::size_t{256} << 20U;
 
 inline std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
@@ -57,7 +56,10 @@ struct Tracer::State {
   PathPrograms programs;  ///< ends before the device does
   std::size_t local_size = 8;
   std::optional<Scene> scene;
+  LoadedImages images{k_most_cached_bytes};
+  PackCache pack_cache{k_most_cached_bytes};
   DeviceScene device_scene;
+  UploadCounts uploads;
   std::optional<Features> packed_for, program_for;
   MathMode program_math = MathMode::strict;
   std::optional<PackedScene> packed;

@@ -3,6 +3,7 @@
 // and triangle tests stumble.
 #include "tests/render/pictures.h"
 #include "tests/tracer/accel/rays.h"
+#include "tracer/accel/tree_cache.h"
 #include "tracer/scene/mesh.h"
 
 #include <embree3/rtcore.h>
@@ -140,6 +141,40 @@ TEST(NearestHit, HasTheSameBitsInEveryTree) {
       EXPECT_EQ(tree.batched(all, 16).nearest, batched.nearest) << width;
       EXPECT_EQ(tree.batched(all, 16).any, batched.any) << width;
     }
+}
+
+TEST(JoinedTrees, HaveTheSameBitsWhereverTheyAreJoined) {
+  const std::vector<Corners> corners = corners_of(shipped_mesh());
+  const std::vector<TestRay> all = random_rays(50000, 0.16f, 2);
+  const std::vector<TestHit> nearest = Tree(corners).nearest(all);
+  TreeCache cache(std::size_t{1} << 28U);
+  for (const std::size_t first :
+       {std::size_t{0}, std::size_t{1}, corners.size() / 3, corners.size() - 1, corners.size()})
+    for (const BvhQuality quality : {BvhQuality::medium, BvhQuality::high})
+      for (const int width : {2, 8}) {
+        const Tree tree(build_joined_bvh(corners, first, quality, width, cache));
+        EXPECT_EQ(tree.nearest(all), nearest) << first << ' ' << width;
+      }
+}
+
+TEST(JoinedTrees, BuildEachPartOnce) {
+  const std::vector<Corners> one = corners_of(shipped_mesh());
+  const std::vector<Corners> room = corners_of(pictures::box({0, 0, 0}, {1, 1, 1}));
+  const std::vector<Corners> hall = corners_of(pictures::box({0, 0, 0}, {2, 2, 2}));
+  TreeCache cache(std::size_t{1} << 28U);
+  const auto join = [&](std::vector<Corners> around) {
+    const std::size_t first = around.size();
+    around.insert(around.end(), one.begin(), one.end());
+    build_joined_bvh(around, first, BvhQuality::medium, k_most_bvh_width, cache);
+    return cache.built();
+  };
+  EXPECT_EQ(join(room), 2U);
+  EXPECT_EQ(join(hall), 3U) << "the model's tree is known";
+  EXPECT_EQ(join(room), 3U);
+  TreeCache small(1);  // holds none
+  small.get(room, BvhQuality::medium);
+  small.get(room, BvhQuality::medium);
+  EXPECT_EQ(small.built(), 2U);
 }
 
 /// Each triangle alone in a tree, so that no box decides.

@@ -17,9 +17,11 @@ std::vector<Corners> corners_of(const Mesh& mesh) {
 }
 
 Tree::Tree(std::span<const Corners> triangles, BvhQuality quality, int width)
+    : Tree(build_bvh(triangles, quality, width)) {}
+
+Tree::Tree(const Bvh& bvh)
     : device_(""),
       program_(device_.build(rays_program_text(), k_strict_options, DS_TEST_PROGRAMS)) {
-  const Bvh bvh = build_bvh(triangles, quality, width);
   nodes_ = device_.upload(bvh.nodes);
   leaves_ = device_.upload(bvh.leaves);
 }

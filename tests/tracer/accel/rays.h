@@ -35,6 +35,7 @@ class Tree {
  public:
   explicit Tree(std::span<const Corners> triangles, BvhQuality quality = BvhQuality::medium,
                 int width = k_most_bvh_width);
+  explicit Tree(const Bvh& bvh);
   std::vector<TestHit> nearest(std::span<const TestRay> rays) const;
   std::vector<std::uint32_t> any(std::span<const TestRay> rays) const;
 

@@ -207,5 +207,45 @@ TEST(Tracer, ALensOfNoRadiusGivesThePinholesBits) {
   EXPECT_LT(difference, 0.02 * sum);
 }
 
+/// A box on a plate, under a picture of a sky.
+pictures::Picture box_under_a_sky(Vec3 half) {
+  pictures::Picture p;
+  const int material = pictures::add_matte(p.scene, {0.5f, 0.5f, 0.5f});
+  pictures::add_object(p.scene, pictures::quad({0, 0, -1}, {5, 0, 0}, {0, 5, 0}), material);
+  pictures::add_object(p.scene, pictures::box({0, 0, 0}, half), material, k_model_object_id);
+  p.scene.images = {pictures::small_sky()};
+  p.scene.lights = {pictures::image_light(0)};
+  p.camera = from_the_front();
+  p.engine.width = k_width;
+  p.engine.height = k_height;
+  p.engine.spp = 2;
+  return p;
+}
+
+TEST(Uploads, AreOfWhatTheNextSceneHasOfItsOwn) {
+  const pictures::Picture first = box_under_a_sky({0.5f, 0.5f, 0.5f});
+  const pictures::Picture second = box_under_a_sky({0.3f, 0.5f, 0.7f});
+  const std::string wanted = pictures::film_hash(pictures::trace(second));
+  Tracer tracer(pictures::tracer_options());
+  tracer.set_scene(first.scene);
+  tracer.trace(first.camera, first.engine);
+  const UploadCounts before = tracer.uploads();
+  EXPECT_EQ(before.tables, 8U);
+  EXPECT_EQ(before.kept_tables, 0U);
+  tracer.set_scene(second.scene);
+  const Film film = tracer.trace(second.camera, second.engine);
+  const UploadCounts after = tracer.uploads();
+  // Its tree and triangles; materials, their programs, lights, the sky's tables and the scene's
+  // numbers are there.
+  EXPECT_EQ(after.tables - before.tables, 3U);
+  EXPECT_EQ(after.kept_tables, 5U);
+  EXPECT_EQ(pictures::film_hash(film), wanted);
+  // The same again: nothing is.
+  tracer.set_scene(second.scene);
+  tracer.trace(second.camera, second.engine);
+  EXPECT_EQ(tracer.uploads().bytes, after.bytes);
+  EXPECT_EQ(tracer.uploads().kept_tables, 13U);
+}
+
 }  // namespace
 }  // namespace ds

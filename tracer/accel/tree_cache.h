@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tracer/accel/bvh.h"
+#include "tracer/base/hash.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+namespace ds {
+
+struct BinaryNode;
+
+/// Trees that were built before, by the triangles they are of: an environment's is the same for
+/// each model in it, and a model's in each environment. Safe from several threads.
+class TreeCache {
+ public:
+  explicit TreeCache(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+
+  /// As build_binary_tree.
+  std::shared_ptr<const std::vector<BinaryNode>> get(std::span<const std::array<Vec3, 3>> triangles,
+                                                     BvhQuality quality);
+  /// How many were built.
+  std::uint64_t built() const;
+
+ private:
+  using Tree = std::shared_ptr<const std::vector<BinaryNode>>;
+  struct Known {
+    Hash128 triangles;
+    BvhQuality quality;
+    Tree tree;
+  };
+
+  mutable std::mutex mutex_;
+  std::size_t most_bytes_, bytes_ = 0;
+  std::uint64_t built_ = 0;
+  std::list<Known> known_;  ///< the last used first
+};
+
+}  // namespace ds
