@@ -29,9 +29,9 @@ json to_json_value(const FileRecord& file) {
           {"pixels_xxh128", file.pixels.hex()}};
 }
 
-/// Nothing where no pixel of the picture could show the model.
-std::optional<double> visible_fraction(const PixelCounts& counts) {
-  if (!counts.model || counts.amodal.value_or(0) == 0) return std::nullopt;
+/// null where no pixel of the picture could show the model.
+json visible_fraction(const PixelCounts& counts) {
+  if (*counts.amodal == 0) return {};
   return static_cast<double>(*counts.model) / static_cast<double>(*counts.amodal);
 }
 
@@ -71,8 +71,8 @@ json to_json_value(const ImageRecord& image) {
               {"environment", parts[2].hex()},
               {"camera", parts[3].hex()},
               {"engine", parts[4].hex()}}}};
-  if (const auto fraction = visible_fraction(image.pixel_counts))
-    line["visible_fraction"] = *fraction;
+  if (image.pixel_counts.model && image.pixel_counts.amodal)
+    line["visible_fraction"] = visible_fraction(image.pixel_counts);
   return line;
 }
 

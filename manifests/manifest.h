@@ -65,7 +65,7 @@ struct ImageRecord {
   std::optional<double> relative_error{};
   FilmFacts film{};  ///< "film": samples taken, samples refused by kind, the error's 95 % interval
   /// An object of the counts that were made; with those of mask and amodal mask the line has
-  /// "visible_fraction" too, their quotient.
+  /// "visible_fraction" too, their quotient; null where that of the amodal mask is 0.
   PixelCounts pixel_counts{};
   Hash128 render_key, files_key;
   std::array<Hash128, 5> parts{};  ///< model, material, environment, camera, engine

@@ -6,6 +6,7 @@
 #include "tracer/kernels/layout.h"
 #include "tracer/scene/sdl.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -20,12 +21,13 @@ std::string canonical_shape(const Scene& environment, unsigned reads) {
   extras.uvs = (reads & kernels::k_plane_uvs) != 0;
   extras.normals = (reads & kernels::k_plane_normals) != 0;
   CanonicalText text;
-  for (const Object& object : environment.objects) {
+  for (std::size_t i = 0; i < environment.objects.size(); ++i) {
+    const Object& object = environment.objects[i];
     text.add("object.geometry", geometry_hash(object.mesh, extras).hex());
     text.add("object.camera_invisible", object.camera_invisible);
-    if ((reads & kernels::k_plane_objects) != 0) text.add("object.id", object.id);
+    if ((reads & kernels::k_plane_objects) != 0) text.add(fmt::format("object{}.id", i), object.id);
     if ((reads & kernels::k_plane_material_ids) != 0)
-      text.add("object.material.id",
+      text.add(fmt::format("object{}.material.id", i),
                environment.materials[static_cast<std::size_t>(object.material)].id);
   }
   return text.text();

@@ -40,6 +40,10 @@ constexpr std::string_view k_picture_format = "png 8 bit, zlib 6, version 1";
 /// Version of how planes are traced.
 constexpr int k_geometry_version = 1;
 
+bool reads_ids(const PlaneType& plane) {
+  return (plane.traits & (kernels::k_plane_objects | kernels::k_plane_material_ids)) != 0;
+}
+
 std::string plane_ending(const PlaneType& type, PlaneEncoding encoding) {
   return fmt::format(".{}{}", type.name, ending_of(encoding));
 }
@@ -81,12 +85,26 @@ Mesh stand_in() {
   return mesh;
 }
 
-/// What is done to the film and which files there are, for `explain`.
-std::string canonical_files(const OutputSettings& outputs, const ToneMap& tone_map) {
+/// The lines of a canonical text that tell ids.
+std::string lines_of_ids(std::string_view text) {
+  std::string ids;
+  for (std::size_t end = 0; (end = text.find('\n')) != text.npos; text.remove_prefix(end + 1))
+    if (const auto line = text.substr(0, end + 1); line.find(".id ") != line.npos) ids += line;
+  return ids;
+}
+
+/// What is done to the film and which files there are, for `explain`, with what no other part tells
+/// and planes hold: ids.
+std::string canonical_files(const OutputSettings& outputs, const ToneMap& tone_map,
+                            const EnvironmentFacts& environment) {
   CanonicalText text;
-  for (const OutputKind& kind : kinds_of(outputs))
+  std::string ids;
+  for (const OutputKind& kind : kinds_of(outputs)) {
     text.add(kind.kind, kind.format);
-  return text.text() + canonical_tone_map(tone_map);
+    if (kind.plane != nullptr && reads_ids(*kind.plane))
+      ids += lines_of_ids(environment.shapes.at(plane_reads(*kind.plane)));
+  }
+  return text.text() + canonical_tone_map(tone_map) + ids;
 }
 
 }  // namespace
@@ -222,7 +240,8 @@ struct WantedPlane {
 struct Environment {
   Shared<std::filesystem::path> folder;  ///< keeps the address that is this entry's name
   std::string text;                      ///< canonical
-  Hash128 part, files_part;
+  Hash128 part;
+  std::string files;  ///< canonical_files
   std::map<unsigned, std::string> shapes;
   TextForm picture;  ///< the picture's output
   std::unordered_map<const void*, View> views;
@@ -233,6 +252,7 @@ struct Kind {
   Shared<std::filesystem::path> material, environment;  ///< keep the addresses that are its name
   Hash128 material_part;
   std::uint32_t material_id = 0;
+  Hash128 files_part;
   MeshExtras reads;  ///< of a model, by the material
   Hash128 program;   ///< of its tokens, as they stand in a canonical text
   bool made = false;
@@ -322,7 +342,7 @@ Environment& KeyMaker::State::environment_of(const ImageSpec& image) {
   Environment made;
   made.folder = image.environment_folder;
   made.part = texts_.add(facts.text);
-  made.files_part = texts_.add(canonical_files(recipe_.outputs, tone_map));
+  made.files = canonical_files(recipe_.outputs, tone_map, facts);
   made.shapes = facts.shapes;
   made.picture = output_form("image", k_picture_format, canonical_tone_map(tone_map));
   return environments_.emplace(made.folder.identity(), std::move(made)).first->second;
@@ -405,6 +425,10 @@ Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& enviro
   kind.reads = reads_of(material, static_cast<int>(material.materials.size()) - 1);
   kind.reads.normals = true;
   kind.material_id = material.materials.back().id;
+  CanonicalText id;
+  if (recipe_.outputs.find_plane("material_id") != nullptr)
+    id.add("model.material.id", kind.material_id);
+  kind.files_part = texts_.add(environment.files + id.text());
   kind.program = program_hash(image, environment, kind.material_part);
   kind.engine =
       TextForm(canonical_engine(settings, TextSet::k_reference + kind.program.hex()), {"seed"});
@@ -453,7 +477,7 @@ ImageKeys KeyMaker::State::keys(const ImageSpec& image) {
                 environment.part,
                 view.part,
                 kind.engine.hash({view_of_digits(fmt::format_int(image.engine.seed))}),
-                environment.files_part};
+                kind.files_part};
   const auto& parts = keys.parts;
   keys.render =
       five_.hash({HexText(parts[0]).text(), HexText(parts[1]).text(), HexText(parts[2]).text(),

@@ -201,8 +201,10 @@ void match_labels(const Settings& settings, Recipe& recipe) {
   if (settings.text("classes.missing") == "error" && recipe.coverage.missing > 0) {
     settings.complain(
         "classes.missing",
-        fmt::format("= \"error\" wants a file for every model listed, found none for {} of {}",
-                    recipe.coverage.missing, recipe.coverage.listed));
+        fmt::format(
+            "= \"error\" wants a file for every model listed, found none for {} of {}, such as {}",
+            recipe.coverage.missing, recipe.coverage.listed,
+            fmt::join(recipe.coverage.missing_examples, ", ")));
   }
 }
 

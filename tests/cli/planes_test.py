@@ -107,6 +107,8 @@ class PlanesTest(TinyCase):
         self.build(*wanted)
         before = self.contents()
         self.edit("materials/red.mat", "scene.materials.red.type", "scene.materials.red.id = 9\nscene.materials.red.type")
+        explained = self.run_it("explain", self.recipe, "-o", self.out, "box.off/0", "--json", *wanted).json
+        self.assertIn(("files", "model.material.id"), [(c["part"], c["name"]) for c in explained["changes"]])
         self.assert_counts(self.build(*wanted), traced_samples=0)
         after = self.contents()
         changed = [name for name in before if before[name] != after[name] and name.startswith("images/")]

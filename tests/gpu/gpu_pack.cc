@@ -97,10 +97,12 @@ class RayTracer {
     Kernel kernel = device_.kernel(program_, function);
     std::vector<std::uint32_t> answers(rays.size() * words);
     const Buffer out = device_.make_buffer(answers.size() * sizeof(std::uint32_t));
-    kernel.set(0, device_.upload(bvh_.nodes));
-    kernel.set(1, device_.upload(bvh_.leaves));
-    kernel.set(2, device_.upload(rays));
-    kernel.set(3, out);
+    // A kernel does not keep its buffers.
+    const Buffer nodes = device_.upload(bvh_.nodes), leaves = device_.upload(bvh_.leaves);
+    const Buffer in = device_.upload(rays);
+    unsigned argument = 0;
+    for (const Buffer* buffer : {&nodes, &leaves, &in, &out})
+      kernel.set(argument++, *buffer);
     device_.run(kernel, 0, rays.size(), k_group);
     device_.read(out, std::as_writable_bytes(std::span(answers)));
     return answers;
@@ -147,19 +149,15 @@ void run(std::span<char*> arguments) {
   }
   if (arguments.size() < 3) fail(ErrorKind::usage, "wanted FOLDER ASSETS [CASE...]");
   Wanted wanted(arguments.subspan(3));
-  Tracer tracer(as_on_a_gpu());
-  if (!tracer.runs_on_cpu()) fail(ErrorKind::device, "no CPU device to trace on");
   for (const gpu::Case& one : gpu::all_cases(arguments[2]))
     if (wanted.take(one.picture.name)) {
       fmt::print(stderr, "{}\n", one.picture.name);
-      if (!one.change) {
-        record(tracer, one);
-        continue;
-      }
       TracerOptions options = as_on_a_gpu();
-      one.change(options);
-      Tracer changed(options);
-      record(changed, one);
+      if (one.change) one.change(options);
+      // A new one, for a tracer keeps tables that two scenes share, and a case writes all of its own.
+      Tracer tracer(options);
+      if (!tracer.runs_on_cpu()) fail(ErrorKind::device, "no CPU device to trace on");
+      record(tracer, one);
     }
   record_ray_cases(wanted);
   wanted.check_all_taken();

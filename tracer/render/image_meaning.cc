@@ -135,8 +135,9 @@ void set_exr_channels(ImageMeaning& meaning, const DecodedImage& decoded, const 
                         std::equal(used.begin(), used.end(), names.begin());
   if (used.empty() || !in_front)
     fail(ErrorKind::asset,
-         "{}: wanted the channels R, G, B, or Y, or one, with or without A, found {}{}", name,
-         fmt::join(decoded.channel_names, ", "),
+         "{}: wanted the channels R, G, B, or Y, or one of another name, with or without A, found "
+         "{}{}",
+         name, fmt::join(decoded.channel_names, ", "),
          has("RY") || has("BY") ? " (luminance and chroma want converting)" : "");
   meaning.color_channels = static_cast<int>(used.size()) - (alpha ? 1 : 0);
   if (names.size() > used.size())

@@ -40,7 +40,8 @@ void quantise(const PlaneType& type, const float* numbers, double most, std::uin
     double value = double{numbers[i]};
     if (has(type, kernels::k_plane_png_signed)) value = met ? (value + 1) / 2 : 0.0;
     value = has(type, kernels::k_plane_png_milli) ? value * 1000 : value * most;
-    out[i] = value > 0 ? static_cast<std::uint16_t>(std::min(std::floor(value + 0.5), most)) : 0;
+    const double whole = value > 0 ? std::min(std::floor(value + 0.5), most) : 0.0;
+    out[i] = static_cast<std::uint16_t>(whole);
   }
 }
 

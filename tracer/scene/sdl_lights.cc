@@ -216,11 +216,14 @@ const std::vector<LightReader>& readers() {
          {"ground.color", SdlType::color, "0.75 0.75 0.75", "the ground's colour", k_not_negative},
          transformation("applied to dir")}},
        read_sky},
-      {{"infinite", "A lat-long picture all around: Z up, the zenith in the top row.",
+      {{"infinite",
+        "A lat-long picture all around: Z up, the zenith in the top row. As in LuxCore it is seen "
+        "mirrored from inside; transformation = 1 0 0 0  0 -1 0 0  0 0 1 0  0 0 0 1 turns that "
+        "round.",
         concatenated(
             {image_parameters(),
              {{"sampleupperhemisphereonly", SdlType::flag, "0", "no light from below the horizon"},
-              transformation("a rotation")}})},
+              transformation("a rotation, mirrored or not")}})},
        read_infinite},
       {{"constantinfinite",
         "The same light from everywhere.",

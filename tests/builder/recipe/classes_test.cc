@@ -57,7 +57,7 @@ TEST_F(RecipeClassesTest, MayBeUnsetByTheEmptyPath) {
 TEST_F(RecipeClassesTest, MayBeStrictAboutDifferences) {
   EXPECT_EQ(folder_.findings(both("classes.missing = \"error\"")),
             "r.toml:6:19: classes.missing = \"error\" wants a file for every model listed, found "
-            "none for 2 of 4");
+            "none for 2 of 4, such as 12, 13");
   EXPECT_EQ(folder_.findings(both("classes.unlisted = \"error\"")),
             "r.toml:6:20: classes.unlisted = \"error\" wants every model in a class file, found 1 "
             "in none: mug.off");

@@ -62,7 +62,7 @@ class MixOnHost {
 
   MaterialPoint resolve(real* choice, Viewer viewer) {
     MaterialPoint m;
-    Surface s;
+    Surface s{};
     resolve_choices({words_.data(), nullptr, nullptr, k_row}, natural{k_outer}, all_lanes(), &s,
                     choice, &m);
     prepare_material(&m, viewer);

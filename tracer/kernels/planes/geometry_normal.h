@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The facet's unit normal in world space, on the side that is seen (PNG: -1 to 1 in the whole range);
-// 0, 0, 0 where nothing is hit.
+// 0, 0, 0 where nothing is hit, in PNG too.
 #pragma once
 
 #include "tracer/kernels/plane.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The unit normal that materials are lit by, in world space, on the side that is seen (PNG: -1 to 1 in
-// the whole range); 0, 0, 0 where nothing is hit. It never faces away from the viewer.
+// the whole range); 0, 0, 0 where nothing is hit, in PNG too. It never faces away from the viewer.
 #pragma once
 
 #include "tracer/kernels/plane.h"

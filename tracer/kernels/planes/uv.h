@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mesh's u and v as its file has them, 0, 0 where nothing is hit or the mesh has none.
+// The mesh's u and v as its file has them (EXR: R and G, B being 0), 0, 0 where nothing is hit or the mesh has none.
 #pragma once
 
 #include "tracer/kernels/plane.h"
