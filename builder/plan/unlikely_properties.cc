@@ -13,9 +13,9 @@
 namespace ds {
 namespace {
 
-class Finder {
+class PropertyFinder {
  public:
-  Finder(const Recipe& recipe, Inputs& inputs) : recipe_(recipe), inputs_(inputs) {}
+  PropertyFinder(const Recipe& recipe, Inputs& inputs) : recipe_(recipe), inputs_(inputs) {}
 
   void look(const ImageSpec& spec) {
     if (!model_.is_same(spec.model_file)) {
@@ -85,7 +85,7 @@ class Finder {
 
 Concern find_unlikely_properties(const Recipe& recipe, const std::vector<PlannedImage>& images,
                                  Inputs& inputs, std::vector<std::string>& lines) {
-  Finder finder(recipe, inputs);
+  PropertyFinder finder(recipe, inputs);
   for (const PlannedImage& image : images)
     if (!image.error) finder.look(image.spec);
   for (std::string& line : finder.lines())
