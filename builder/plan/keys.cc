@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/keys.h"
 
+#include "builder/plan/output_kinds.h"
 #include "builder/plan/text_form.h"
 #include "tracer/base/canonical.h"
 #include "tracer/base/hex_text.h"
@@ -27,37 +28,8 @@
 namespace ds {
 namespace {
 
-/// A file that an image has.
-struct OutputKind {
-  std::string_view kind;             ///< "image" or a plane's name
-  std::string ending;                ///< ".png", ".mask.png"
-  std::string_view format;           ///< in the keys: how it is encoded
-  const PlaneType* plane = nullptr;  ///< none: the picture
-};
-constexpr std::string_view k_picture_ending = ".png";
-/// A change of the encoder's settings changes it.
-constexpr std::string_view k_picture_format = "png 8 bit, zlib 6, version 1";
 /// Version of how planes are traced.
 constexpr int k_geometry_version = 1;
-
-bool reads_ids(const PlaneType& plane) {
-  return (plane.traits & (kernels::k_plane_objects | kernels::k_plane_material_ids)) != 0;
-}
-
-std::string plane_ending(const PlaneType& type, PlaneEncoding encoding) {
-  return fmt::format(".{}{}", type.name, ending_of(encoding));
-}
-
-/// In the order of the files of an image.
-std::vector<OutputKind> kinds_of(const OutputSettings& outputs) {
-  std::vector<OutputKind> kinds;
-  if (outputs.image)
-    kinds.push_back({"image", std::string(k_picture_ending), k_picture_format, nullptr});
-  for (const PlaneOutput& plane : outputs.planes)
-    kinds.push_back({plane.type->name, plane_ending(*plane.type, plane.encoding),
-                     format_of(plane.encoding), plane.type});
-  return kinds;
-}
 
 std::string_view view_of_digits(const fmt::format_int& number) {
   return {number.data(), number.size()};
@@ -83,28 +55,6 @@ Mesh stand_in() {
   mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
   mesh.triangles = {{0, 1, 2}};
   return mesh;
-}
-
-/// The lines of a canonical text that tell ids.
-std::string lines_of_ids(std::string_view text) {
-  std::string ids;
-  for (std::size_t end = 0; (end = text.find('\n')) != text.npos; text.remove_prefix(end + 1))
-    if (const auto line = text.substr(0, end + 1); line.find(".id ") != line.npos) ids += line;
-  return ids;
-}
-
-/// What is done to the film and which files there are, for `explain`, with what no other part tells
-/// and planes hold: ids.
-std::string canonical_files(const OutputSettings& outputs, const ToneMap& tone_map,
-                            const EnvironmentFacts& environment) {
-  CanonicalText text;
-  std::string ids;
-  for (const OutputKind& kind : kinds_of(outputs)) {
-    text.add(kind.kind, kind.format);
-    if (kind.plane != nullptr && reads_ids(*kind.plane))
-      ids += lines_of_ids(environment.shapes.at(plane_reads(*kind.plane)));
-  }
-  return text.text() + canonical_tone_map(tone_map) + ids;
 }
 
 }  // namespace
@@ -136,35 +86,6 @@ std::string canonical_model(const MeshHashes& mesh, MeshExtras reads,
   if (options.normals == Normals::smooth) text.add("crease_deg", options.crease_deg);
   if (options.normals == Normals::keep) text.add("kept_normals", mesh.normals.hex());
   return text.text();
-}
-
-std::string output_path(const std::string& image_id, std::string_view ending) {
-  constexpr std::string_view k_folder = "images/";
-  std::string path;
-  path.reserve(k_folder.size() + image_id.size() + ending.size());
-  ((path += k_folder) += image_id) += ending;
-  return path;
-}
-
-std::vector<std::string> output_paths(const OutputSettings& outputs, const std::string& image_id) {
-  std::vector<std::string> paths;
-  for (const OutputKind& kind : kinds_of(outputs))
-    paths.push_back(output_path(image_id, kind.ending));
-  return paths;
-}
-
-const std::vector<std::string>& all_output_endings() {
-  static const std::vector<std::string> endings = [] {
-    std::vector<std::string> list{std::string(k_picture_ending)};
-    for (const PlaneType& type : plane_types())
-      for (const PlaneEncoding encoding : encodings_of(type))
-        if (std::string ending = plane_ending(type, encoding); ending != list.back())
-          list.push_back(std::move(ending));
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    return list;
-  }();
-  return endings;
 }
 
 namespace {

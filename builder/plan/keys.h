@@ -3,6 +3,7 @@
 
 #include "builder/db/database.h"
 #include "builder/plan/inputs.h"
+#include "builder/plan/output_kinds.h"
 #include "builder/plan/texts.h"
 #include "builder/recipe/recipe.h"
 
@@ -68,14 +69,5 @@ const ToneMap& tone_map_of(const Recipe& recipe, const EnvironmentFacts& environ
 /// the normalisation steps that are switched on; those of normals where `reads` has them.
 std::string canonical_model(const MeshHashes& mesh, MeshExtras reads,
                             const NormaliseOptions& options);
-
-/// Path of an output of an image, by its ending: "images/human.ply/0.mask.png".
-std::string output_path(const std::string& image_id, std::string_view ending);
-/// Of all outputs that a recipe can ask for: ".png", ".depth.exr".
-const std::vector<std::string>& all_output_endings();
-
-/// Paths of all files that an image of the recipe consists of; known of images too whose files
-/// cannot be read.
-std::vector<std::string> output_paths(const OutputSettings& outputs, const std::string& image_id);
 
 }  // namespace ds
