@@ -254,7 +254,7 @@ TEST_P(Bsdf, IsReciprocal) {
     const double scale = side > 0 ? 1.0 : 1.5 * 1.5;
     const double there = scale * double{evaluate(p, a, wi).value.y} / double{b.wo.z};
     const double back = double{evaluate(p, b, back_wi).value.y} / double{a.wo.z};
-    EXPECT_NEAR(there, back, 2e-4 * (there + back) + 1e-7);
+    EXPECT_NEAR(there, back, 1e-4 * (there + back) + 1e-7);
     (side > 0 ? above : below) = (side > 0 ? above : below) || there > 0;
   }
   EXPECT_EQ(above, !is_specular(materials::inputs(GetParam(), 0.1f)));
