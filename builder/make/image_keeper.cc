@@ -149,7 +149,7 @@ void ImageKeeper::keep_batch(std::deque<TracedImage> batch) {
   for (Ready& image : ready)
     if (!image.error || image.over_limit) images.push_back(&image);
   keep_together(images);
-  for (const Ready& image : ready)
+  for (Ready& image : ready)
     settle(image);
 }
 
@@ -187,12 +187,13 @@ void ImageKeeper::keep_alone(Ready& image) {
   }
 }
 
-void ImageKeeper::settle(const Ready& image) {
+void ImageKeeper::settle(Ready& image) {
   const std::lock_guard lock(mutex_);
   for (const Hash128 key : products_of(*image.image))
     products_.erase(products_.find(key));
   --under_way_;
-  kept_.push_back({image.image, image.work, image.error, image.dropped});
+  // Who takes it is then the last to let go of it.
+  kept_.push_back({image.image, image.work, std::move(image.error), image.dropped});
   changed_.notify_all();
 }
 

@@ -74,7 +74,7 @@ class ImageKeeper {
   void keep_batch(std::deque<TracedImage> batch);
   void keep_together(std::vector<Ready*>& images);
   void keep_alone(Ready& image);
-  void settle(const Ready& image);
+  void settle(Ready& image);
   Ready made_ready(const TracedImage& traced, const std::vector<Ready>& before) const;
   Product made_before(const OutputFile& output, const std::vector<Ready>& before) const;
   Product keep_bytes(Ready& ready, Product product, std::vector<std::byte> bytes,
