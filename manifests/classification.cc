@@ -26,6 +26,15 @@ std::vector<std::string_view> split_words(std::string_view line) {
   return words;
 }
 
+/// Whether the line of several words may be a file name with blanks in it: "coffee mug.ply". The last
+/// word of a class is a count.
+bool is_file_name(const std::vector<std::string_view>& words) {
+  const std::string_view last = words.back();
+  const std::size_t dot = last.rfind('.');
+  return dot != last.npos && dot + 1 < last.size() &&
+         last.find_first_not_of("0123456789.+-") != last.npos;
+}
+
 /// A count: decimal digits only, nothing where it is anything else or too large for an int.
 std::optional<int> parse_count(std::string_view word) {
   int value = 0;
@@ -64,15 +73,17 @@ class Parser {
       read_magic(words);
     } else if (totals_line_ == 0) {
       read_totals(words);
+    } else if (words.size() == 1 || is_file_name(words)) {
+      add_model(fmt::format("{}", fmt::join(words, " ")));
     } else if (words.size() == 3) {
       close_class();
       open_class(words);
-    } else if (words.size() == 1) {
-      add_model(words[0]);
     } else {
-      diagnostics_.add(here(),
-                       "must be a class (name parent count) or a model (one word), got {} words",
-                       words.size());
+      diagnostics_.add(
+          here(),
+          "must be a class (name parent count) or a model (one word, or a file name with "
+          "its ending), got {} words: {}",
+          words.size(), fmt::join(words, " "));
       // Which models are of which class is not known from here on.
       said_in_class_.reset();
       miscounted_ = lost_class_ = true;
@@ -142,18 +153,18 @@ class Parser {
     }
   }
 
-  void add_model(std::string_view model) {
+  void add_model(const std::string& model) {
     if (result_.classes.empty()) {
       diagnostics_.add(here(), "model {} stands before the first class", model);
       return;
     }
     ModelClass& owner = result_.classes.back();
-    const auto [first, is_new] = seen_.try_emplace(std::string(model), owner.name, line_);
+    const auto [first, is_new] = seen_.try_emplace(model, owner.name, line_);
     if (!is_new && !(twice_ && first->second.first == owner.name)) {
       diagnostics_.add(here(), "model {} stands in class {} and already in class {} (line {})",
                        model, owner.name, first->second.first, first->second.second);
     }
-    owner.models.emplace_back(model);
+    owner.models.push_back(model);
     owner.model_lines.push_back(line_);
     ++result_.model_count;
   }

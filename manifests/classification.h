@@ -26,7 +26,9 @@ struct ModelClass {
 ///   class := name parent count EOL  (model EOL){count}      parent: the name of an earlier class,
 ///   or "0" for none
 ///
-/// A name or model is one word. Names are unique, so that a parent's name is enough to tell it.
+/// A class's name is one word, and a model's, but for a file name with its ending, in which blanks may
+/// stand ("coffee mug.ply"; each as one blank). Names are unique, so that a parent's name is enough to
+/// tell it.
 struct Classification {
   std::string file;                 ///< as given to the reader, for messages
   std::vector<ModelClass> classes;  ///< in file order, parents first

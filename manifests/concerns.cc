@@ -10,9 +10,9 @@ namespace ds {
 std::vector<Concern> no_concerns() {
   std::vector<Concern> concerns;
   for (const char* name : {"mask_empty", "mask_at_frame", "mask_small", "picture_black",
-                           "picture_white", "models_absent", "models_unlisted", "classes_unshared",
-                           "classes_empty", "splits_empty", "assets_unphysical", "sizes_unlikely",
-                           "names_by_case", "meshes_damaged", "models_unlikely"})
+                           "picture_white", "models_absent", "models_unlisted", "entries_ambiguous",
+                           "classes_unshared", "classes_empty", "splits_empty", "assets_unphysical",
+                           "sizes_unlikely", "names_by_case", "meshes_damaged", "models_unlikely"})
     concerns.push_back({name, 0, 0, {}});
   return concerns;
 }

@@ -15,6 +15,8 @@ namespace ds {
 ///   picture_white    pictures of which over a quarter of the pixels are clipped in every channel
 ///   models_absent    models that the class files list and that have no file
 ///   models_unlisted  model files that no class file lists, where there is one
+///   entries_ambiguous  entries of the class files that mean several model files each, as "mug" does
+///                    mug.off and mug.ply
 ///   classes_unshared  classes that have models in one of the class files and none in the other
 ///   classes_empty    classes of the class files, and classes above them, that no image is of
 ///   assets_unphysical  material files and environments with a surface that gives back more light

@@ -68,9 +68,13 @@ void print_capped(BuildResult result, const Recipe& recipe) {
 }
 
 void print_result(const BuildResult& result, const Dataset& dataset) {
+  const std::string from_store =
+      result.traced == result.built ? ""
+      : result.traced == 0          ? " from the store"
+                           : fmt::format(" ({} traced, the others from the store)", result.traced);
   std::string text =
-      fmt::format("{}: {} images: {} built, {} reused, {} failed", dataset.recipe.name,
-                  result.images, result.built, result.reused, result.failed);
+      fmt::format("{}: {} images: {} built{}, {} reused, {} failed", dataset.recipe.name,
+                  result.images, result.built, from_store, result.reused, result.failed);
   if (result.not_reached > 0)
     text += fmt::format(", {} not reached{}", result.not_reached,
                         result.stopped || result.disk_failed ? "" : " (-k makes what can be made)");
@@ -199,6 +203,7 @@ int run_build(const Arguments& arguments) {
   nlohmann::json told = to_json(result, dataset);
   told["lacking"] = to_json(all_lacking);
   told["edited_files"] = plan.edited.size();
+  told["strict_errors"] = concerns;
   if (arguments.json)
     print_json(told);
   else

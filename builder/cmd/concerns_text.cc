@@ -27,6 +27,9 @@ constexpr ConcernText k_texts[] = {
     {"models_absent", "models that the class files list have no file",
      "classes.missing = \"ignore\""},
     {"models_unlisted", "model files stand in no class file", "classes.unlisted = \"keep\""},
+    {"entries_ambiguous",
+     "entries of the class files mean several model files each, which get one class and split "
+     "(their whole names in the class files tell them apart)"},
     {"classes_unshared", "classes have models in one of the class files only",
      "classes.unshared = \"keep\""},
     {"classes_empty", "classes have no image", "classes.missing = \"ignore\""},

@@ -15,6 +15,7 @@ class Groups {
  public:
   /// `cause`: the same text for all that stand together; `alone`: the line where it is one name.
   void add(const std::string& cause, const std::string& name, std::string alone);
+  std::size_t size() const { return groups_.size(); }
   /// "NAME and 7 more: CAUSE", in the order of the first names; below each all its names where they
   /// are wanted.
   void print(Stream to, bool all_names) const;

@@ -4,6 +4,7 @@
 #include "builder/cmd/verbs.h"
 #include "builder/recipe/recipe.h"
 #include "tracer/base/streams.h"
+#include "tracer/base/text_width.h"
 #include "tracer/scene/mesh.h"
 
 #include <nlohmann/json.hpp>
@@ -44,7 +45,8 @@ void print_row(const std::string& name, const MeshReport& report) {
   if (report.has_colors) found.emplace_back("colours");
   constexpr std::size_t k_indent = 56;
   line += "  ";
-  if (line.size() > k_indent && !found.empty()) line += "\n" + std::string(k_indent, ' ');
+  if (columns_of(line) > static_cast<int>(k_indent) && !found.empty())
+    line += "\n" + std::string(k_indent, ' ');
   line += wrap(fmt::format("{}", fmt::join(found, ", ")), k_indent, k_indent);
   while (line.ends_with(' '))
     line.pop_back();

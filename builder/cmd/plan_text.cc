@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 namespace ds {
 
@@ -97,14 +98,45 @@ std::string common_reason(const PlannedImage& image) {
                        "images/" + image.spec.id, "images/*");
 }
 
+/// "view changed: position" of "view changed: position: 0 1 2 -> 0 1 3".
+std::string without_values(const std::string& reason) {
+  const std::size_t property = reason.find(" changed: ");
+  return property == reason.npos ? reason : reason.substr(0, reason.find(": ", property + 10));
+}
+
+/// The same without values: "trace: view changed: position".
+std::string common_properties(const PlannedImage& image) {
+  std::vector<std::string> reasons;
+  for (const std::string& reason : image.reasons)
+    reasons.push_back(without_values(reason));
+  return with_replaced(fmt::format("{}: {}", step_of(image), fmt::join(reasons, "; ")),
+                       "images/" + image.spec.id, "images/*");
+}
+
+Groups stale_groups(const Plan& plan, std::string (*cause)(const PlannedImage&)) {
+  Groups groups;
+  for (const PlannedImage& image : plan.images)
+    if (!image.elsewhere && image.stale()) groups.add(cause(image), image.spec.id, line_of(image));
+  return groups;
+}
+
+/// By reason. A camera that fits its model gives every image other values: where there are so many
+/// reasons, only what changed tells them apart.
+Groups stale_groups(const Plan& plan) {
+  constexpr std::size_t k_most_reasons = 8;
+  Groups by_value = stale_groups(plan, common_reason);
+  return by_value.size() > k_most_reasons ? stale_groups(plan, common_properties)
+                                          : std::move(by_value);
+}
+
 }  // namespace
 
 void print_plan(Stream to, const Plan& plan, bool all_names) {
-  Groups stale, removed, failed;
+  const Groups stale = stale_groups(plan);
+  Groups removed, failed;
   for (const PlannedImage& image : plan.images) {
     if (image.elsewhere) continue;
     const std::string& id = image.spec.id;
-    if (image.stale()) stale.add(common_reason(image), id, line_of(image));
     if (!image.error) continue;
     const std::string why = fmt::format("cannot be made: {}", image.error->what());
     failed.add(why, id, fmt::format("{}: {}", id, why));
@@ -119,7 +151,7 @@ void print_plan(Stream to, const Plan& plan, bool all_names) {
                                                     : "remove: no image of the recipe has it";
     removed.add(what, path, fmt::format("{}: {}", path, what));
   }
-  for (const Groups* groups : {&stale, &removed, &failed})
+  for (const Groups* groups : {&stale, &std::as_const(removed), &std::as_const(failed)})
     groups->print(to, all_names);
 }
 

@@ -44,6 +44,9 @@ void look_at_labels(std::vector<Concern>& concerns, const Recipe& recipe,
   Concern& unlisted = concern(concerns, "models_unlisted");
   unlisted = {unlisted.name, recipe.coverage.unlisted, recipe.coverage.files,
               recipe.coverage.unlisted_examples};
+  Concern& ambiguous = concern(concerns, "entries_ambiguous");
+  ambiguous = {ambiguous.name, recipe.coverage.ambiguous, recipe.coverage.listed,
+               recipe.coverage.ambiguous_examples};
   const UnsharedClasses& found = recipe.coverage.unshared;
   Concern& unshared = concern(concerns, "classes_unshared");
   unshared.of = found.of;

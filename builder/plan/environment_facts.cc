@@ -82,19 +82,31 @@ ToneMap tone_map_from(const json& value) {
 
 }  // namespace
 
+std::uint32_t largest_material_id(const Scene& scene) {
+  std::uint32_t largest = 0;
+  for (const Material& material : scene.materials)
+    largest = std::max(largest, material.id);
+  return largest;
+}
+
 unsigned plane_reads(const PlaneType& plane) {
   return plane.traits & (kernels::k_plane_normals | kernels::k_plane_uvs |
                          kernels::k_plane_objects | kernels::k_plane_material_ids);
 }
 
 EnvironmentFacts facts_of(const Scene& environment) {
+  std::uint32_t largest_object_id = 0;
+  for (const Object& object : environment.objects)
+    largest_object_id = std::max(largest_object_id, object.id);
   return {canonical_environment(environment),
           canonical_shapes(environment),
           environment.tone_map,
           longest_side(environment),
           std::any_of(environment.materials.begin(), environment.materials.end(),
                       [](const Material& material) { return !material.unphysical.empty(); }),
-          environment.lost_faces};
+          environment.lost_faces,
+          largest_object_id,
+          largest_material_id(environment)};
 }
 
 std::string to_text(const EnvironmentFacts& facts, const std::vector<SourceFile>& files) {
@@ -108,7 +120,9 @@ std::string to_text(const EnvironmentFacts& facts, const std::vector<SourceFile>
                 {"tone_map", to_json(facts.tone_map)},
                 {"longest_side_m", facts.longest_side_m},
                 {"unphysical", facts.unphysical},
-                {"lost_faces", facts.lost_faces}}
+                {"lost_faces", facts.lost_faces},
+                {"largest_object_id", facts.largest_object_id},
+                {"largest_material_id", facts.largest_material_id}}
         .dump();
   } catch (const json::exception&) {  // a name that is no UTF-8
     return "";
@@ -125,7 +139,9 @@ std::optional<EnvironmentFacts> facts_from_text(const std::string& text) {
                             tone_map_from(object.at("tone_map")),
                             object.at("longest_side_m").get<double>(),
                             object.at("unphysical").get<bool>(),
-                            object.at("lost_faces").get<bool>()};
+                            object.at("lost_faces").get<bool>(),
+                            object.at("largest_object_id").get<std::uint32_t>(),
+                            object.at("largest_material_id").get<std::uint32_t>()};
   } catch (const json::exception&) {
     return std::nullopt;
   } catch (const Error&) {  // a file that cannot be looked at: reading it says why

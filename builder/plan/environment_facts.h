@@ -5,6 +5,7 @@
 #include "tracer/device/plane_types.h"
 #include "tracer/scene/scene.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -22,11 +23,15 @@ struct EnvironmentFacts {
   double longest_side_m = 0;  ///< of the box around its objects; 0 where it has none
   bool unphysical = false;    ///< a material of it gives back more light than it gets, or the like
   bool lost_faces = false;    ///< a mesh of it did when it was read
+  std::uint32_t largest_object_id = 0, largest_material_id = 0;
 };
 
 /// What of an object a plane reads beside its places: its traits of kernels/plane_traits.h that say
 /// so.
 unsigned plane_reads(const PlaneType& plane);
+
+/// 0 where no material has one.
+std::uint32_t largest_material_id(const Scene& scene);
 
 EnvironmentFacts facts_of(const Scene& environment);
 

@@ -105,7 +105,9 @@ bool PlacedFiles::is_edited(const std::string& path) const {
   if (placed == nullptr) return false;
   try {
     const std::optional<Hash128> bytes = bytes_in_place(path);
-    return bytes && bytes != placed->object;
+    if (!bytes || bytes == placed->object) return false;
+    // Bytes that the store holds are no one's work: a build placed them that did not come to note it.
+    return placed->of_manifest || !dataset_.store || !dataset_.store->has(*bytes);
   } catch (const Error&) {
     return false;
   }

@@ -45,7 +45,8 @@ class PlacedFiles {
   /// Hash of the bytes of the file that is there now, whatever put them there; nothing where there
   /// is none. Reads it where its stamp is not the one remembered. Throws Error(io).
   std::optional<Hash128> bytes_in_place(const std::string& path) const;
-  /// Whether a build put the file there and it holds other bytes now. Not where that cannot be told.
+  /// Whether a build put the file there and it holds other bytes now, which the store does not have.
+  /// Not where that cannot be told.
   bool is_edited(const std::string& path) const;
   /// What the database knew of a file; null where nothing.
   const Row* find(std::string_view path) const;

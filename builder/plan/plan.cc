@@ -8,6 +8,8 @@
 #include "builder/plan/unlikely_properties.h"
 #include "builder/plan/unlikely_sizes.h"
 #include "tracer/base/log.h"
+#include "tracer/kernels/layout.h"
+#include "tracer/render/plane_file.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -202,6 +204,28 @@ void check_normals(const Recipe& recipe, Inputs& inputs, const fs::path& model) 
         model.string());
 }
 
+/// Throws Error(asset) for an id that the plane's file cannot hold, whether or not the image shows it.
+void check_ids(const Recipe& recipe, Inputs& inputs, const ImageSpec& spec) {
+  const auto check = [&](const PlaneOutput& plane, const fs::path& of, const char* property,
+                         std::uint32_t id) {
+    const std::uint32_t most = largest_id(plane.encoding);
+    if (id > most)
+      fail(ErrorKind::asset,
+           "{}: {} must be at most {} for the plane {} as {}, got {}; give it a smaller id",
+           of.string(), property, most, plane.type->name, name_of(plane.encoding), id);
+  };
+  for (const PlaneOutput& plane : recipe.outputs.planes) {
+    if ((plane.type->traits & kernels::k_plane_words) == 0) continue;
+    const EnvironmentFacts& around = inputs.environment_facts(spec.environment_folder);
+    if ((plane.type->traits & kernels::k_plane_objects) != 0)
+      check(plane, spec.environment_folder, "scene.objects.NAME.id", around.largest_object_id);
+    if ((plane.type->traits & kernels::k_plane_material_ids) == 0) continue;
+    check(plane, spec.environment_folder, "scene.materials.NAME.id", around.largest_material_id);
+    check(plane, spec.material_file, "scene.materials.NAME.id",
+          largest_material_id(inputs.material(spec.material_file)));
+  }
+}
+
 /// Models and environments of images that can be made, whose damage is said where they are read.
 Concern count_damaged(const std::vector<PlannedImage>& images, Inputs& inputs) {
   Concern concern{"meshes_damaged", 0, 0, {}};
@@ -301,6 +325,7 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
     image.spec = std::move(spec);
     try {
       check_normals(dataset.recipe, inputs, image.spec.model_file);
+      check_ids(dataset.recipe, inputs, image.spec);
       if (dataset.recipe.camera_fit)
         fit_image(image.spec, dataset.recipe,
                   inputs.model_sphere(image.spec.model_file, dataset.recipe.normalise));

@@ -155,6 +155,22 @@ void refuse_second_labels(const Settings& settings, const Recipe& recipe,
   }
 }
 
+/// One model in two formats is in a dataset twice, and whatever stem a class file lists, in one split
+/// or the other.
+void find_ambiguous_entries(Recipe& recipe) {
+  std::map<std::size_t, std::vector<std::string>> models;  // by entry
+  for (const fs::path& model : recipe.models)
+    for (const std::size_t entry : recipe.labels.find_all(model.filename().string()))
+      models[entry].push_back(model.filename().string());
+  ClassCoverage& coverage = recipe.coverage;
+  for (const auto& [entry, names] : models) {
+    if (names.size() < 2) continue;
+    if (++coverage.ambiguous <= k_concern_examples)
+      coverage.ambiguous_examples.push_back(
+          fmt::format("{} ({})", recipe.labels.name(entry), some_of(names)));
+  }
+}
+
 /// Compares the class files with the models found, and does about the differences what the recipe
 /// says.
 void match_labels(const Settings& settings, Recipe& recipe) {
@@ -184,6 +200,7 @@ void match_labels(const Settings& settings, Recipe& recipe) {
   coverage.missing_allowed = settings.given("classes.missing");
   coverage.unlisted_allowed = settings.given("classes.unlisted");
   refuse_second_labels(settings, recipe, used);
+  find_ambiguous_entries(recipe);
   const std::string& wanted = settings.text("classes.unlisted");
   if (wanted == "error" && !unlisted.empty()) {
     settings.complain(

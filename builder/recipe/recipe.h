@@ -51,6 +51,9 @@ struct ClassCoverage {
   std::size_t unlisted = 0;  ///< of these, the ones that no class file lists
   std::vector<std::string> missing_examples, unlisted_examples;  ///< the first few names
   UnsharedClasses unshared;
+  /// Entries of the class files that mean several model files each, as "mug" mug.off and mug.ply.
+  std::size_t ambiguous = 0;
+  std::vector<std::string> ambiguous_examples;  ///< "mug (mug.off, mug.ply)", the first few
   /// The recipe itself says that they may be, with classes.missing, .unlisted and .unshared.
   bool missing_allowed = false, unlisted_allowed = false, unshared_allowed = false;
 };

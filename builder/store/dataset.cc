@@ -224,8 +224,12 @@ class WorkingFolder {
   fs::path before_;
 };
 
-void open_store(Dataset& dataset, const fs::path& folder, Disk& disk) {
+void open_store(Dataset& dataset, const fs::path& folder, Access access, Disk& disk) {
   dataset.store = std::make_unique<Store>(folder, disk);
+  if (access != Access::build && is_read_only(folder)) {
+    dataset.database = open_database_copy(*dataset.store);
+    return;
+  }
   dataset.claims = std::make_unique<Claims>(folder / "lock");
   dataset.database = open_database(*dataset.store, *dataset.claims);
 }
@@ -293,7 +297,7 @@ Dataset open_folder(const DatasetRequest& request, Access access, Disk& disk) {
     fail(ErrorKind::io,
          "{}: its store {} is not there; put it back, or build the recipe with -o and --store",
          dataset.folder.string(), pointer->store.string());
-  open_store(dataset, pointer->store, disk);
+  open_store(dataset, pointer->store, access, disk);
   const std::optional<DatasetRow> row = dataset.database->find_dataset(pointer->id);
   if (!row)
     fail(ErrorKind::io, "{}: the store {} knows nothing of it; build its recipe again",
@@ -369,7 +373,7 @@ Dataset open_recipe(const DatasetRequest& request, Access access, Disk& disk) {
   if (access != Access::build && !has_store)
     dataset.database = std::make_unique<Database>(fs::path());
   else
-    open_store(dataset, pointer.store, disk);
+    open_store(dataset, pointer.store, access, disk);
   if (access != Access::inputs)
     check_owner(request, dataset.folder, dataset.recipe, known, dataset.database.get());
   if (access == Access::build) pointer = enter_folder(dataset, request, pointer, disk);

@@ -41,7 +41,7 @@ struct Dataset {
   Recipe recipe;
   std::filesystem::path folder;  ///< absolute
   DatasetRow row;
-  std::unique_ptr<Claims> claims;  ///< null where there is no store yet
+  std::unique_ptr<Claims> claims;  ///< null where there is no store yet, or no writing to it
   std::unique_ptr<Store> store;    ///< null where there is no store yet
   std::unique_ptr<Database> database;
 };

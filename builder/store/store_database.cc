@@ -4,15 +4,20 @@
 #include "builder/store/made_record.h"
 #include "tracer/base/error.h"
 #include "tracer/base/log.h"
+#include "tracer/base/process_folder.h"
 
+#include <cerrno>
 #include <filesystem>
 #include <string>
 #include <system_error>
+#include <unistd.h>
 
 namespace ds {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* k_database_file = "dsbuild.sqlite";
 
 void set_aside(const fs::path& file) {
   std::error_code error;
@@ -41,7 +46,7 @@ void refill(Database& database, Store& store) {
 }  // namespace
 
 std::unique_ptr<Database> open_database(Store& store, Claims& claims) {
-  const fs::path file = store.folder() / "dsbuild.sqlite";
+  const fs::path file = store.folder() / k_database_file;
   claims.share_database();
   std::unique_ptr<Database> database;
   try {
@@ -60,6 +65,27 @@ std::unique_ptr<Database> open_database(Store& store, Claims& claims) {
   // New, set aside, removed or emptied by somebody: the records know what the store holds.
   if (!database->has_products()) refill(*database, store);
   return database;
+}
+
+std::unique_ptr<Database> open_database_copy(const Store& store) {
+  std::error_code error;
+  const fs::path parent = fs::temp_directory_path(error) / fmt::format("dsbuild-{}", ::getuid());
+  const fs::path folder = make_process_folder(parent);
+  for (const char* side : {"", "-wal"}) {
+    const fs::path name = std::string(k_database_file) + side;
+    if (fs::exists(store.folder() / name, error))
+      fs::copy_file(store.folder() / name, folder / name, error);
+    if (error)
+      fail(ErrorKind::io, "{}: cannot copy to {}: {}", (store.folder() / name).string(),
+           folder.string(), error.message());
+  }
+  auto database = std::make_unique<Database>(folder / k_database_file);
+  fs::remove_all(folder, error);  // what is open lives on
+  return database;
+}
+
+bool is_read_only(const fs::path& folder) {
+  return ::access(folder.c_str(), W_OK) != 0 && (errno == EROFS || errno == EACCES);
 }
 
 }  // namespace ds

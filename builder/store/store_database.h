@@ -5,6 +5,7 @@
 #include "builder/store/claims.h"
 #include "builder/store/store.h"
 
+#include <filesystem>
 #include <memory>
 
 namespace ds {
@@ -14,5 +15,13 @@ namespace ds {
 /// traced again for it. Datasets and build logs are lost with it; the next build of a recipe enters
 /// its dataset anew. Throws Error(io) where it is damaged and another process has it open.
 std::unique_ptr<Database> open_database(Store& store, Claims& claims);
+
+/// Opens a copy of the store's database, as whoever may not write there wants it: SQLite has to write
+/// beside a database to read it. What is written to the copy is lost. Throws Error(io).
+std::unique_ptr<Database> open_database_copy(const Store& store);
+
+/// Whether this process may not write into the folder: it is another user's, or its disk is mounted
+/// read-only.
+bool is_read_only(const std::filesystem::path& folder);
 
 }  // namespace ds

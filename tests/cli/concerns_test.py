@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Datasets that are of no use are said to be so; cameras that fit leave no model cut off."""
 import json
+import shutil
 import struct
 import zlib
 
 from harness import IMAGES, TinyCase, main
 
 NONE = {name: 0 for name in ("mask_empty", "mask_at_frame", "mask_small", "picture_black", "picture_white",
-                             "models_absent", "models_unlisted", "classes_unshared", "classes_empty", "splits_empty",
-                             "assets_unphysical", "sizes_unlikely", "names_by_case", "meshes_damaged",
+                             "models_absent", "models_unlisted", "entries_ambiguous", "classes_unshared",
+                             "classes_empty", "splits_empty", "assets_unphysical", "sizes_unlikely", "names_by_case", "meshes_damaged",
                              "models_unlikely")}
 
 
@@ -198,6 +199,20 @@ class ConcernsTest(TinyCase):
         self.assertIn("2 of 2 classes have models in one of the class files only: box (train), crate (test)", err)
         self.concerns("--strict", code=1)
         self.assertEqual(self.concerns("--set", "classes.unshared=keep", "--strict")[1].count("warning"), 0)
+
+    def test_entries_that_mean_several_files(self):
+        """box in one format is for training, in another for the test: whoever lists the stem says it of both."""
+        shutil.copy(self.tiny / "models/tetra.ply", self.tiny / "models/box.ply")
+        (self.tiny / "train.cla").write_text("PSB 1\n1 2\nsolid 0 2\nbox.off\ntetra\n")
+        (self.tiny / "test.cla").write_text("PSB 1\n1 1\nsolid 0 1\nbox\n")
+        self.edit("recipe.toml", "[materials]", '[classes]\ntrain = "train.cla"\ntest = "test.cla"\n\n[materials]')
+        concerns, err = self.concerns()
+        self.assertEqual(concerns, {**NONE, "entries_ambiguous": 1})
+        self.assertIn("1 of 3 entries of the class files mean several model files each", err)
+        self.assertIn(": box (box.off, box.ply)", err)
+        self.concerns("--strict", code=1)
+        (self.tiny / "test.cla").write_text("PSB 1\n1 1\nsolid 0 1\nbox.ply\n")
+        self.assertEqual(self.concerns("--strict")[0], NONE)
 
     def test_pictures_that_are_all_white(self):
         concerns, err = self.concerns("--set", "outputs.tone_map=linear", "--set", "outputs.tone_map_scale=1000")

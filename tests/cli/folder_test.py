@@ -301,6 +301,25 @@ class FolderTest(TinyCase):
         self.assert_counts(self.build(), built=1, developed=0, traced=0)
         self.assertEqual(self.contents(), files)
 
+    def test_a_dataset_that_one_may_only_read(self):
+        """Another's, or on a disk that is mounted read-only: SQLite alone could not open its database there."""
+        if os.geteuid() != 0:
+            self.skipTest("this needs to be two users")
+        self.build()
+        os.chmod(self.folder, 0o755)
+        other = {"preexec_fn": nobody}
+        run = self.run_it("status", self.out, "--json", **other)
+        if run.code != 0 and "ermission denied" in run.err and str(self.out) not in run.err:
+            self.skipTest("others than root cannot read the sources here")
+        self.assertEqual(run.json["up_to_date"], IMAGES, run)
+        self.assertEqual(self.run_it("plan", self.recipe, "-o", self.out, "--json", **other).json["up_to_date"], IMAGES)
+        run = self.run_it("verify", self.out, "--json", **other)
+        self.assertEqual((run.code, run.json["not_checked"]), (0, None), run)
+        self.assertIn(f"{IMAGES} built", self.run_it("log", self.out, **other).out)
+        run = self.run_it("build", self.recipe, "-o", self.out, **other)
+        self.assertEqual(run.code, 1, run)
+        self.assertRegex(run.err, r"^dsbuild: error: \S+: cannot \w+: Permission denied\n$")
+
     def test_hard_links_are_read_only_to_others_than_root(self):
         if os.geteuid() != 0:
             self.skipTest("this is about another user than root's")

@@ -33,6 +33,21 @@ class PlanesTest(TinyCase):
         self.assertEqual(len(rows), width * height, path)
         return rows
 
+    def test_ids_that_no_file_can_hold_are_found_before_anything_is_traced(self):
+        self.edit("environments/floor/environment.scn", "scene.objects.floor.material",
+                  "scene.objects.floor.id = 70000\nscene.objects.floor.material")
+        self.assertEqual(self.run_it("plan", self.recipe, "-o", self.out).code, 0)
+        run = self.run_it("plan", self.recipe, "-o", self.out, *planes("object_id"))
+        self.assertEqual(run.code, 1, run)
+        self.assertIn("scene.objects.NAME.id must be at most 65535 for the plane object_id as png16, got 70000",
+                      run.out)
+        counts = self.build("-k", *planes("object_id"), code=1)
+        self.assertEqual((counts["failed"], counts["built"]), (IMAGES // 2, IMAGES // 2), counts)
+        self.edit("environments/floor/environment.scn", "70000", "256")
+        self.assertEqual(self.build(*planes("object_id"))["failed"], 0)
+        run = self.run_it("plan", self.recipe, "-o", self.out, *planes("object_id:png8"))
+        self.assertIn("at most 255 for the plane object_id as png8, got 256", run.out)
+
     def test_planes_agree_with_each_other_and_with_the_manifest(self):
         self.edit("environments/floor/environment.scn", "scene.objects.floor.material",
                   "scene.objects.floor.id = 40000\nscene.objects.floor.material")
@@ -136,7 +151,7 @@ class PlanesTest(TinyCase):
                   "scene.objects.floor.id = 70000\nscene.objects.floor.material")
         run = self.run_it("build", self.recipe, "-o", self.out, *planes("object_id"))
         self.assertNotEqual(run.code, 0, run)
-        self.assertIn("the plane object_id holds the id 70000, and its file at most 65535", run.err)
+        self.assertIn("scene.objects.NAME.id must be at most 65535 for the plane object_id as png16, got 70000", run.err)
 
 
 if __name__ == "__main__":

@@ -111,6 +111,13 @@ class StaleTest(TinyCase):
         run = self.run_it("build", self.recipe, *out, "--json")
         self.assertEqual(run.json["edited_files"], 0)
         self.assertNotIn("changed after", run.err)
+        # As after a build that was killed between placing a file and noting it: nobody's work is lost.
+        self.build("--set", "engine.spp=2")
+        newer = (self.out / "images/box.off/0.png").read_bytes()
+        self.build()
+        (self.out / "images/box.off/0.png").unlink()
+        (self.out / "images/box.off/0.png").write_bytes(newer)
+        self.assert_counts(self.build(), edited_files=0, built=1)
 
     def test_rehash_reads_what_the_stamp_would_spare(self):
         self.build()

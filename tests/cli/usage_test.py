@@ -210,6 +210,13 @@ class UsageTest(TinyCase):
         self.assertEqual(len(lines), 3, lines)
         self.assertRegex(lines[1], r"^\S+ and 3 more: cannot be made: .*red.mat:1: .*did you mean glass\?$")
 
+    def test_a_plan_groups_by_property_where_each_image_has_its_values(self):
+        fit = ["--set", "camera.distance_m=fit", "--set", "camera.count=12"]
+        self.assertEqual(self.run_it("build", self.recipe, *fit).code, 0)
+        lines = self.run_it("plan", self.recipe, *fit, "--set", "camera.elevation_deg=25").out.splitlines()
+        self.assertEqual(len(lines), 2, lines)
+        self.assertRegex(lines[0], r"^box.off/0 and 23 more: trace: camera changed: position$")
+
     def test_wrong_command_lines_are_exit_code_2(self):
         for arguments in (["no-such-verb"], ["build"], ["build", self.recipe, "--no-such-option"],
                           ["build", self.folder / "absent.toml"], ["status", self.tiny],

@@ -62,6 +62,18 @@ TEST(Classification, TakesAnyLineEndAndAByteOrderMark) {
   EXPECT_EQ(findings("\xff\xfeP"), "a.cla: must be UTF-8, found UTF-16");
 }
 
+// As a person's folder has them; a class of three words is none of these.
+TEST(Classification, ReadsFileNamesWithBlanks) {
+  const Classification read = parse_classification(
+      "PSB 1\n2 4\nmug 0 3\ncoffee mug.ply\n  my old mug v2.off \nred mug big.obj\nv1.0 mug 1\n7\n",
+      "a.cla");
+  EXPECT_THAT(read.classes.at(0).models,
+              ElementsAre("coffee mug.ply", "my old mug v2.off", "red mug big.obj"));
+  EXPECT_EQ(read.path(1), "mug/v1.0");
+  EXPECT_EQ(findings("PSB 1\n1 1\na 0 1.5\n1\n"),
+            "a.cla:3: class a: the number of models must be a count, got 1.5");
+}
+
 TEST(Classification, NamesTheLineOfEachWrongCount) {
   EXPECT_EQ(findings("PSB 1\n2 3\n\na 0 2\n1\n\nb 0 1\n2\n3\n"),
             "a.cla:4: class a must hold 2 models as it says, found 1\n"
@@ -73,7 +85,9 @@ TEST(Classification, SaysOneMistakeOnce) {
   EXPECT_EQ(findings("PSB 1\n2 3\na 0 2\n1\nb 0 1\n2\n"),
             "a.cla:3: class a must hold 2 models as it says, found 1");
   EXPECT_EQ(findings("PSB 1\n2 2\na 0 1\n1\nb 1\n2\n"),
-            "a.cla:5: must be a class (name parent count) or a model (one word), got 2 words");
+            "a.cla:5: must be a class (name parent count) or a model (one word, or a file name "
+            "with its ending), got "
+            "2 words: b 1");
   EXPECT_EQ(findings("PSB 1\n2 2\na 0 1\n1\nb 0 one\n2\n"),
             "a.cla:5: class b: the number of models must be a count, got one");
   EXPECT_EQ(findings("PSB 1\n2 4\na 0 2\n1\n2\na 0 2\n1\n2\n"), "a.cla:6: class a stands twice");
@@ -119,7 +133,9 @@ TEST(Classification, ReportsEverythingTogether) {
             "a.cla:4: class a: the number of models must be a count, got x\n"
             "a.cla:5: class a stands twice\n"
             "a.cla:6: a class name must hold no / and be none of 0 . .., got b/c\n"
-            "a.cla:8: must be a class (name parent count) or a model (one word), got 2 words");
+            "a.cla:8: must be a class (name parent count) or a model (one word, or a file name "
+            "with its ending), got "
+            "2 words: two words");
 }
 
 TEST(Labels, FindsByWholeNameThenStemThenBenchmarkNumber) {

@@ -239,8 +239,8 @@ class Parser {
       const auto width = static_cast<std::uint64_t>(window.width());
       const auto height = static_cast<std::uint64_t>(window.height());
       if (width > most || height > most || width * height > most)
-        refuse("its header promises {} x {} pixels, {} bytes hold at most {}", width, height,
-               bytes_.size(), most);
+        refuse("its header promises {} x {} pixels, of a file of {} bytes at most {} are believed",
+               width, height, bytes_.size(), most);
     }
     constexpr std::uint64_t k_bytes_a_pixel = 32;
     std::uint64_t row = static_cast<std::uint64_t>(data.width());

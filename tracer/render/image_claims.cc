@@ -155,8 +155,9 @@ std::string check_image_claims(std::span<const std::byte> bytes, const std::stri
     const std::uint64_t most = believable_pixels(bytes.size());
     if (size.width > most || size.height > most || size.width * size.height > most)
       fail(ErrorKind::asset,
-           "{}: cannot be read as an image: its header promises {} x {} pixels, {} bytes hold at "
-           "most {}",
+           "{}: cannot be read as an image: its header promises {} x {} pixels, of a file of {} "
+           "bytes "
+           "at most {} are believed",
            name, size.width, size.height, bytes.size(), most);
   };
   if (format.empty())

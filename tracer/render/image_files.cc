@@ -6,6 +6,7 @@
 #include "tracer/render/develop.h"
 #include "tracer/render/image_claims.h"
 #include "tracer/render/image_codec.h"
+#include "tracer/render/png_chunks.h"
 
 #include <dlfcn.h>
 
@@ -50,6 +51,7 @@ std::string read_image_file(const fs::path& file) {
 DecodedImage decode_image_bytes(std::span<const std::byte> bytes, const std::string& name,
                                 Halves halves) {
   const std::string format = check_image_claims(bytes, name);
+  if (format == "png") return codec().decode_bytes(pixel_chunks(bytes, name), format, name, halves);
   return codec().decode_bytes(bytes, format, name, halves);
 }
 

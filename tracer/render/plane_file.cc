@@ -105,6 +105,10 @@ std::vector<PlaneEncoding> encodings_of(const PlaneType& type) {
   return encodings;
 }
 
+std::uint32_t largest_id(PlaneEncoding encoding) {
+  return encoding == PlaneEncoding::png8 ? 255 : 65535;
+}
+
 std::vector<std::byte> encode_plane(const Plane& plane, PlaneEncoding encoding) {
   if (encoding == PlaneEncoding::exr || encoding == PlaneEncoding::half)
     return encode_exr(with_channels(plane), encoding == PlaneEncoding::half);

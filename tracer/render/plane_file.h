@@ -5,6 +5,7 @@
 #include "tracer/render/render.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,7 +27,10 @@ std::string_view ending_of(PlaneEncoding encoding);
 /// Stands in the keys: a change of an encoder's settings changes it and makes the files anew.
 std::string_view format_of(PlaneEncoding encoding);
 
-/// Throws Error(recipe) for a number that the encoding cannot hold.
+/// The largest id that the encoding holds, of planes of ids.
+std::uint32_t largest_id(PlaneEncoding encoding);
+
+/// Throws Error(recipe) for an id that the encoding cannot hold.
 std::vector<std::byte> encode_plane(const Plane& plane, PlaneEncoding encoding);
 
 }  // namespace ds

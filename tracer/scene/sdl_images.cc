@@ -85,7 +85,10 @@ bool same_reading(const Image& a, const Image& b) {
 std::vector<SdlParameter> image_parameters() {
   constexpr NumberRange k_positive{.least = 0, .open_least = true};
   return {
-      {"file", SdlType::file, "", "the image; must be given"},
+      {"file", SdlType::file, "",
+       "the image; must be given. Colours that a file holds multiplied by its alpha, as EXR does, "
+       "are "
+       "divided by it"},
       {"gamma", SdlType::number, "2.2", "old name of colorspace.gamma", k_positive},
       {"colorspace.gamma", SdlType::number, "2.2",
        "values are raised to it; an EXR or HDR file's are linear and need none", k_positive},

@@ -191,6 +191,22 @@ TEST_F(LoadImage, WhatIsNoImageIsAnError) {
               HasSubstr("cannot be read as an image"));
 }
 
+// libpng writes "libpng warning: iCCP: ..." for a colour profile that is none.
+TEST_F(LoadImage, ChunksThatNoPixelNeedsAreNotRead) {
+  const std::string plain = png_file(1, 1, 8, 2, {51, 102, 204});
+  constexpr std::size_t k_behind_header = 8 + 12 + 13;
+  Bytes extended(plain.begin(), plain.begin() + k_behind_header);
+  append_chunk(extended, "iCCP", {'x', 0, 0, 1, 2, 3});
+  extended.insert(extended.end(), plain.begin() + k_behind_header, plain.end());
+  Image wanted = image_of(plain),
+        image = image_of(std::string(extended.begin(), extended.end()), "b.png");
+  load_image(wanted);
+  testing::internal::CaptureStderr();
+  load_image(image);
+  EXPECT_EQ(image.rgb, wanted.rgb);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 TEST_F(LoadImage, CutOffFilesAreErrors) {
   const std::string png = png_file(64, 64, 8, 2, Bytes(64 * 64 * 3, 99), 0);
   EXPECT_THAT(error_of(image_of(png.substr(0, png.size() / 2))), HasSubstr("cannot"));

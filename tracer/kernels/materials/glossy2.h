@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A matte base kd under a rough dielectric coat of reflectance ks at normal incidence (or of
 // refractive index `index` where that is not 0), with absorption ka over depth d in the coat. Without
-// `doublesided` the back, which the true normals point away from, has no coat.
+// `doublesided` the back, which the true normals point away from, has no coat. Where uroughness and
+// vroughness differ, u runs along an axis made of the normal; in LuxCore it is the mesh's uv that says.
 //
 // The coat is GGX with Schlick's Fresnel, and what comes back after several reflections among its
 // facets (microfacet.h). What the coat does not reflect lights the base (Kelemen and Szirmay-Kalos

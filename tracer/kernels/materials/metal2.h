@@ -2,7 +2,8 @@
 // A rough conductor: GGX microfacets with the exact Fresnel reflectance of n + ik for each of r, g,
 // b, and the light that comes back after several reflections among them, so that a rough metal is
 // no darker than a smooth one. LuxCore has the first reflection only (and loses up to 0.78 of the
-// energy).
+// energy). Where uroughness and vroughness differ, u runs along an axis made of the normal; in LuxCore
+// it is the mesh's uv that says.
 #pragma once
 
 #include "tracer/kernels/microfacet.h"

@@ -4,6 +4,8 @@
 // Surfaces", with 1 / (1 + Lambda(i) + Lambda(o)) for both ways' shadowing in place of a product).
 // What would need several facets is lost, as in LuxCore: of diffuse light from outside 2 % at
 // roughness 0.2, 6 % at 0.4 and 21 % at 1; from inside, where facets reflect totally, 10, 26 and 58 %.
+// Where uroughness and vroughness differ, u runs along an axis made of the normal; in LuxCore it is the
+// mesh's uv that says.
 //
 // Radiance changes by the square of the index ratio on the way through, as in glass. Indices within
 // 1 % of each other bend nothing that could be seen: there what is not reflected goes straight on.
