@@ -21,6 +21,8 @@ struct Arguments {
   std::string output_folder, store_folder, device;
   std::string shard = "1/1";
   std::uint64_t rerender = 0, seed = 0;
+  std::string format, export_folder;
+  std::vector<std::string> splits, filters;
   std::string report_file, against;
   int most_spp = 0, seeds = 4;
   bool no_choices = false;
@@ -62,6 +64,10 @@ enum class Option {
   effects,
   rerender,
   seed,
+  format,
+  export_folder,
+  splits,
+  filters,
   report_file,
   against,
   report_size,  ///< how much is measured

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/command_line.h"
+#include "manifests/export/exporter.h"
 #include "tracer/base/error.h"
 #include "tracer/base/nearest.h"
 #include "tracer/base/number_range.h"
@@ -52,6 +53,13 @@ void add_word(CLI::App& verb, const char* name, std::string& to,
     to = text;
   };
   verb.add_option_function<std::string>(name, read, help)->type_name("WHAT");
+}
+
+std::vector<std::string_view> format_names() {
+  std::vector<std::string_view> names;
+  for (const ExporterType& type : exporter_types())
+    names.emplace_back(type.name);
+  return names;
 }
 
 }  // namespace
@@ -153,6 +161,29 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
     case Option::rerender:
       add_number(verb, "--rerender", to.rerender, k_any_count,
                  "trace N images again and compare their bytes");
+      return;
+    case Option::format:
+      verb.add_option("--format", to.format, fmt::format("{}", fmt::join(format_names(), ", ")))
+          ->required()
+          ->type_name("FORMAT");
+      return;
+    case Option::export_folder:
+      verb.add_option("-o,--output", to.export_folder,
+                      "the export's folder, made whole or not at all; an export there is replaced")
+          ->required()
+          ->type_name("DIR");
+      return;
+    case Option::splits:
+      verb.add_option("--split", to.splits, "images of this split only (repeatable) [all]")
+          ->allow_extra_args(false)
+          ->type_name("SPLIT");
+      return;
+    case Option::filters:
+      verb.add_option("--filter", to.filters,
+                      "images only whose class, model, material, environment or view matches, as "
+                      "class=vehicle/* (repeatable: of one key any, of several all)")
+          ->allow_extra_args(false)
+          ->type_name("KEY=PATTERN");
       return;
     case Option::report_file:
       verb.add_option("-o,--output", to.report_file,

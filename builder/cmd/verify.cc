@@ -127,17 +127,21 @@ void print_findings(const VerifyResult& result, bool all) {
 }  // namespace
 
 int run_verify(const Arguments& arguments) {
-  const std::filesystem::path folder = dataset_folder(arguments.request());
-  const std::string unfinished = unfinished_build(folder);
+  const bool exported = is_export(arguments.target);
+  const std::filesystem::path folder =
+      exported ? std::filesystem::path(arguments.target) : dataset_folder(arguments.request());
+  const std::string unfinished = exported ? "" : unfinished_build(folder);
   VerifyResult result;
   try {
-    result = verify_files(folder);
+    result = exported ? verify_export(folder) : verify_files(folder);
   } catch (const Error&) {
     print_unfinished(arguments.json ? "" : unfinished);  // why there is no manifest yet
     throw;
   }
   std::string not_checked;
-  if (!result.has_manifest)
+  if (exported)
+    not_checked = "it is an export";
+  else if (!result.has_manifest)
     not_checked = "the manifest cannot be read; the next build writes it anew";
   else if (std::filesystem::is_directory(arguments.target))
     not_checked = verify_folder(result, arguments);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/make/verify.h"
 
+#include "builder/make/checksum_lines.h"
 #include "builder/make/older_lines.h"
 #include "builder/make/plane_outputs.h"
+#include "manifests/export/export_folder.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
 #include "tracer/base/hash_stream.h"
@@ -24,6 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* k_checksums = "manifest/checksums.xxh128";
 constexpr const char* k_images_manifest = "manifest/images.jsonl";
+const std::set<std::string> k_own_files{k_images_manifest, "manifest/dataset.json", k_checksums};
 
 void check_file(VerifyResult& result, const fs::path& folder, const FileRecord& wanted) {
   const fs::path file = folder / wanted.path;
@@ -102,35 +105,13 @@ std::vector<const FileRecord*> differing_files(const fs::path& folder,
   return differing;
 }
 
-/// The lines of the checksum file; nothing, with a finding, where it is not there or damaged.
-std::optional<std::map<std::string, Hash128>> read_checksums(VerifyResult& result,
-                                                             const fs::path& folder) {
-  std::error_code error;
-  if (!fs::is_regular_file(folder / k_checksums, error)) {
-    result.findings.push_back({Finding::Kind::missing, k_checksums, "the file is missing", ""});
-    return std::nullopt;
-  }
-  std::map<std::string, Hash128> sums;
-  std::istringstream lines(read_text_file(folder / k_checksums));
-  for (std::string line; std::getline(lines, line);) {
-    const std::optional<Hash128> hash = Hash128::from_hex(line.substr(0, 32));
-    if (!hash || line.compare(32, 2, "  ") != 0) {
-      result.findings.push_back(
-          {Finding::Kind::manifest, k_checksums, "a line is no checksum: " + line, ""});
-      return std::nullopt;
-    }
-    sums.emplace(line.substr(34), *hash);
-  }
-  return sums;
-}
-
 /// The checksum file against the manifest: it is what people without dsbuild check.
 void check_checksums(VerifyResult& result, const fs::path& folder,
                      const std::map<std::string, Hash128>& listed) {
   const auto add = [&](const std::string& path, const std::string& what) {
     result.findings.push_back({Finding::Kind::manifest, path, what, ""});
   };
-  const auto known = read_checksums(result, folder);
+  const auto known = read_checksums(result, folder, k_checksums);
   if (!known) return;
   const std::map<std::string, Hash128>& sums = *known;
   const std::string sums_file = k_checksums;
@@ -151,30 +132,6 @@ void check_checksums(VerifyResult& result, const fs::path& folder,
     else if (content_hash(folder / path) != hash)
       add(path, "it has another checksum than " + sums_file + " says");
   }
-}
-
-void find_extra(VerifyResult& result, const fs::path& folder,
-                const std::map<std::string, Hash128>& listed) {
-  const std::set<std::string> own{k_images_manifest, "manifest/dataset.json", k_checksums};
-  std::vector<std::string> extra;
-  std::error_code error;
-  fs::recursive_directory_iterator entry(folder, error);
-  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
-    const std::string path = entry->path().lexically_relative(folder).generic_string();
-    if (path == ".dsbuild") {
-      entry.disable_recursion_pending();
-      continue;
-    }
-    std::error_code vanished;
-    if (!entry->is_directory(vanished) && !own.contains(path) && !listed.contains(path))
-      extra.push_back(path);
-  }
-  if (error)
-    result.findings.push_back(
-        {Finding::Kind::extra, ".", "its folders cannot be listed: " + error.message(), ""});
-  std::sort(extra.begin(), extra.end());
-  for (const std::string& path : extra)
-    result.findings.push_back({Finding::Kind::extra, path, "nothing lists it", ""});
 }
 
 /// The images to trace again: those of the least hashes, so that one seed chooses the same ones
@@ -256,24 +213,6 @@ std::map<std::string, ImageRecord> records_by_id(const fs::path& folder) {
   return records;
 }
 
-/// Where the manifest cannot be read, the files against the checksum file alone.
-void verify_by_checksums(VerifyResult& result, const fs::path& folder) {
-  const auto sums = read_checksums(result, folder);
-  if (!sums) return;
-  for (const auto& [path, hash] : *sums) {
-    if (path.starts_with("manifest/")) continue;
-    ++result.files;
-    std::error_code error;
-    if (!fs::is_regular_file(folder / path, error))
-      result.findings.push_back({Finding::Kind::missing, path, "the file is missing", ""});
-    else if (content_hash(folder / path) != hash)
-      result.findings.push_back({Finding::Kind::changed, path,
-                                 fmt::format("it has another checksum than {} says", k_checksums),
-                                 ""});
-  }
-  find_extra(result, folder, *sums);
-}
-
 }  // namespace
 
 const char* to_string(Finding::Kind kind) {
@@ -310,7 +249,10 @@ VerifyResult verify_files(const fs::path& folder) {
     if (!fs::is_regular_file(folder / k_images_manifest, ignored)) throw;
     result.has_manifest = false;
     result.findings.push_back({Finding::Kind::manifest, k_images_manifest, error.what(), ""});
-    verify_by_checksums(result, folder);
+    if (const auto sums = read_checksums(result, folder, k_checksums)) {
+      compare_with_checksums(result, folder, *sums, k_own_files, k_checksums);
+      find_extra(result, folder, *sums, k_own_files);
+    }
     return result;
   }
   result.images = images.size();
@@ -322,7 +264,22 @@ VerifyResult verify_files(const fs::path& folder) {
   for (const FileRecord* file : differing_files(folder, images))
     check_file(result, folder, *file);
   check_checksums(result, folder, listed);
-  find_extra(result, folder, listed);
+  find_extra(result, folder, listed, k_own_files);
+  return result;
+}
+
+bool is_export(const fs::path& folder) {
+  std::error_code error;
+  return fs::exists(folder / k_export_record, error);
+}
+
+VerifyResult verify_export(const fs::path& folder) {
+  VerifyResult result;
+  const std::set<std::string> own{k_export_checksums};
+  if (const auto sums = read_checksums(result, folder, k_export_checksums)) {
+    compare_with_checksums(result, folder, *sums, own, k_export_checksums);
+    find_extra(result, folder, *sums, own);
+  }
   return result;
 }
 

@@ -43,6 +43,11 @@ struct VerifyResult {
 /// the files are compared with the checksum file.
 VerifyResult verify_files(const std::filesystem::path& folder);
 
+/// An export against its own checksums. `images` stays 0.
+VerifyResult verify_export(const std::filesystem::path& folder);
+/// Whether `dsbuild export` made the folder.
+bool is_export(const std::filesystem::path& folder);
+
 /// Adds what only the recipe and the database can tell: images the manifest lacks or has too many
 /// of, keys of an older recipe, a manifest that is not the one written.
 void verify_against_plan(VerifyResult& result, Dataset& dataset, const Plan& plan);

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "manifests/export/export.h"
+
+#include "builder/cmd/plan_text.h"
+#include "builder/cmd/progress.h"
+#include "builder/cmd/stop_signal.h"
+#include "builder/cmd/verbs.h"
+#include "builder/plan/plan.h"
+#include "tracer/base/error.h"
+#include "tracer/base/log.h"
+#include "tracer/base/streams.h"
+
+#include <chrono>
+#include <filesystem>
+
+namespace ds {
+namespace {
+
+/// What the dataset lacks of its recipe; "" where nothing, or where nobody can tell: an export is of
+/// what the manifest lists.
+std::string behind(const Arguments& arguments) {
+  try {
+    RealDisk disk;
+    Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
+    Inputs inputs(*dataset.database, Stamps::trust);
+    const Plan plan = make_plan(dataset, inputs, false);
+    const PlanCounts counts = count(plan);
+    if (counts.stale > 0 || counts.failed > 0)
+      return fmt::format(
+          "{} of {} images are not as their recipe wants them; exported is what the "
+          "manifest lists (dsbuild build first?)",
+          counts.stale + counts.failed, counts.images);
+    return manifest_line(plan.manifest);
+  } catch (const Error&) {
+    return "";
+  }
+}
+
+std::vector<std::pair<std::string, std::string>> filters_of(const Arguments& arguments) {
+  std::vector<std::pair<std::string, std::string>> filters;
+  for (const std::string& filter : arguments.filters) {
+    const std::size_t equals = filter.find('=');
+    if (equals == filter.npos)
+      fail(ErrorKind::usage, "--filter: wanted KEY=PATTERN, as class=vehicle/*, got {}", filter);
+    filters.emplace_back(filter.substr(0, equals), filter.substr(equals + 1));
+  }
+  return filters;
+}
+
+/// A line on a terminal, a few times a second.
+class ExportProgress {
+ public:
+  ExportProgress() : moves_(has_status_line()) {}
+  ~ExportProgress() { clear_status_line(); }
+  ExportProgress(const ExportProgress&) = delete;
+  ExportProgress& operator=(const ExportProgress&) = delete;
+  void operator()(std::uint64_t done, std::uint64_t all) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!moves_ || (now - shown_ < std::chrono::milliseconds(200) && done < all)) return;
+    shown_ = now;
+    show_status_line(fmt::format("{} of {} images exported", done, all));
+  }
+
+ private:
+  bool moves_;
+  std::chrono::steady_clock::time_point shown_{};
+};
+
+ExportResult run(const ExportRequest& request) {
+  const std::atomic<bool>& stop = stop_on_signal();
+  ExportProgress progress;
+  return export_dataset(
+      request, [&](std::uint64_t done, std::uint64_t all) { progress(done, all); }, stop);
+}
+
+}  // namespace
+
+int run_export(const Arguments& arguments) {
+  const std::filesystem::path folder = dataset_folder(arguments.request());
+  if (const std::string why = behind(arguments); !why.empty())
+    warn(fmt::format("{}: {}", folder.string(), why));
+  const ExportRequest request{folder,           arguments.export_folder, arguments.format,
+                              arguments.splits, filters_of(arguments),   arguments.copy};
+  const ExportResult result = run(request);
+  for (const std::string& note : result.notes)
+    warn(note);
+  if (arguments.json) {
+    print_json({{"format", arguments.format},
+                {"folder", arguments.export_folder},
+                {"images", result.images},
+                {"files", result.files},
+                {"bytes", result.bytes},
+                {"splits", result.splits},
+                {"left_out", result.left_out},
+                {"notes", result.notes}});
+    return 0;
+  }
+  std::string left_out;
+  for (const auto& [why, count] : result.left_out)
+    left_out += fmt::format("; {} left out ({})", count,
+                            why == "unclassified" ? "without a class or split"
+                            : why == "split"      ? "of another split"
+                                                  : "by --filter");
+  say(Stream::report, "{}: {} images, {} files, {:.1f} MB{}\n", arguments.export_folder,
+      result.images, result.files, static_cast<double>(result.bytes) / 1e6, left_out);
+  return 0;
+}
+
+}  // namespace ds

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/make/checksum_lines.h"
+
+#include "tracer/base/error.h"
+#include "tracer/base/files.h"
+#include "tracer/base/hash_stream.h"
+
+#include <algorithm>
+#include <sstream>
+#include <system_error>
+#include <vector>
+
+namespace ds {
+
+namespace fs = std::filesystem;
+
+std::optional<std::map<std::string, Hash128>> read_checksums(VerifyResult& result,
+                                                             const fs::path& folder,
+                                                             const char* file) {
+  std::error_code error;
+  if (!fs::is_regular_file(folder / file, error)) {
+    result.findings.push_back({Finding::Kind::missing, file, "the file is missing", ""});
+    return std::nullopt;
+  }
+  std::map<std::string, Hash128> sums;
+  std::istringstream lines(read_text_file(folder / file));
+  for (std::string line; std::getline(lines, line);) {
+    const std::optional<Hash128> hash = Hash128::from_hex(line.substr(0, 32));
+    if (!hash || line.compare(32, 2, "  ") != 0) {
+      result.findings.push_back(
+          {Finding::Kind::manifest, file, "a line is no checksum: " + line, ""});
+      return std::nullopt;
+    }
+    sums.emplace(line.substr(34), *hash);
+  }
+  return sums;
+}
+
+void compare_with_checksums(VerifyResult& result, const fs::path& folder,
+                            const std::map<std::string, Hash128>& sums,
+                            const std::set<std::string>& own, const char* file) {
+  for (const auto& [path, hash] : sums) {
+    if (own.contains(path)) continue;
+    ++result.files;
+    std::error_code error;
+    if (!fs::is_regular_file(folder / path, error))
+      result.findings.push_back({Finding::Kind::missing, path, "the file is missing", ""});
+    else if (content_hash(folder / path) != hash)
+      result.findings.push_back({Finding::Kind::changed, path,
+                                 fmt::format("it has another checksum than {} says", file), ""});
+  }
+}
+
+void find_extra(VerifyResult& result, const fs::path& folder,
+                const std::map<std::string, Hash128>& listed, const std::set<std::string>& own) {
+  std::vector<std::string> extra;
+  std::error_code error;
+  fs::recursive_directory_iterator entry(folder, error);
+  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+    const std::string path = entry->path().lexically_relative(folder).generic_string();
+    if (path == ".dsbuild") {
+      entry.disable_recursion_pending();
+      continue;
+    }
+    std::error_code vanished;
+    if (!entry->is_directory(vanished) && !own.contains(path) && !listed.contains(path))
+      extra.push_back(path);
+  }
+  if (error)
+    result.findings.push_back(
+        {Finding::Kind::extra, ".", "its folders cannot be listed: " + error.message(), ""});
+  std::sort(extra.begin(), extra.end());
+  for (const std::string& path : extra)
+    result.findings.push_back({Finding::Kind::extra, path, "nothing lists it", ""});
+}
+
+}  // namespace ds

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two passes over the manifest: the first sees which images go out under which names, the second hands
+// them to the exporter one after the other.
+#include "manifests/export/export.h"
+
+#include "manifests/export/card.h"
+#include "manifests/export/exporter.h"
+#include "manifests/json_text.h"
+#include "manifests/manifest_glance.h"
+#include "tracer/base/error.h"
+#include "tracer/base/files.h"
+#include "tracer/base/nearest.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <set>
+#include <string_view>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* k_images = "manifest/images.jsonl";
+constexpr std::array<std::string_view, 5> k_filter_keys{"class", "model", "material", "environment",
+                                                        "view"};
+
+std::string_view value_of(const ImageRecord& image, std::string_view key) {
+  if (key == "class") return image.class_path;
+  if (key == "model") return image.model;
+  if (key == "material") return image.material;
+  if (key == "environment") return image.environment;
+  return image.view;
+}
+
+/// Every image of the manifest, a line at a time.
+template <typename Visit>
+void visit_images(const fs::path& folder, const Visit& visit) {
+  const fs::path file = folder / k_images;
+  std::ifstream lines(file);
+  if (!lines) fail(ErrorKind::io, "{}: cannot be read", file.string());
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number)
+    visit(image_from_json_line(line, file.string(), number));
+}
+
+class Export {
+ public:
+  explicit Export(const ExportRequest& request) : request_(request) { check_request(); }
+  ExportResult run(const std::function<void(std::uint64_t, std::uint64_t)>& progress,
+                   const std::atomic<bool>& stop);
+
+ private:
+  void check_request();
+  /// Why the image is not exported; "" where it is.
+  std::string left_out(const ImageRecord& image) const;
+  void look();
+  void check_found() const;
+  std::string key_of(const ImageRecord& image) const;
+  std::string record(const ExportFolder& to) const;
+
+  const ExportRequest& request_;
+  const ExporterType* type_ = nullptr;
+  ExportInput input_;
+  bool has_classes_ = false, has_splits_ = false;
+  std::set<std::string> splits_;        ///< of all images
+  std::set<std::string> shared_stems_;  ///< of several models
+  ExportResult result_;
+};
+
+void Export::check_request() {
+  type_ = find_exporter(request_.format);
+  if (type_ == nullptr) {
+    std::vector<std::string_view> known;
+    for (const ExporterType& type : exporter_types())
+      known.emplace_back(type.name);
+    fail(ErrorKind::usage, "--format: wanted {}, got {}{}",
+         fmt::format("{}", fmt::join(known, ", ")), request_.format,
+         did_you_mean(request_.format, known));
+  }
+  for (const auto& [key, pattern] : request_.filters)
+    if (std::find(k_filter_keys.begin(), k_filter_keys.end(), key) == k_filter_keys.end())
+      fail(ErrorKind::usage, "--filter {}={}: wanted one of {}, got {}{}", key, pattern,
+           fmt::format("{}", fmt::join(k_filter_keys, ", ")), key,
+           did_you_mean(key, {k_filter_keys.begin(), k_filter_keys.end()}));
+}
+
+std::string Export::left_out(const ImageRecord& image) const {
+  for (const std::string_view key : k_filter_keys) {
+    bool named = false, matches = false;
+    for (const auto& [wanted, pattern] : request_.filters)
+      if (wanted == key) {
+        named = true;
+        matches = matches || matches_pattern(value_of(image, key), pattern);
+      }
+    if (named && !matches) return "filter";
+  }
+  if (has_classes_ && image.class_path.empty()) return "unclassified";
+  if (!has_splits_) return "";
+  if (image.split.empty()) return "unclassified";
+  const auto& wanted = request_.splits;
+  return wanted.empty() || std::find(wanted.begin(), wanted.end(), image.split) != wanted.end()
+             ? ""
+             : "split";
+}
+
+/// "train" where the dataset knows no splits: what readers take a dataset without any for.
+std::string split_of(const ImageRecord& image) {
+  return image.split.empty() ? "train" : image.split;
+}
+
+void Export::look() {
+  std::error_code error;
+  if (!fs::is_regular_file(request_.folder / k_images, error))
+    fail(ErrorKind::usage,
+         "{}: wanted the folder of a dataset that dsbuild built, found no {} in it",
+         request_.folder.string(), k_images);
+  input_.folder = request_.folder;
+  input_.dataset = read_dataset_manifest(request_.folder);
+  has_classes_ = !input_.dataset.class_paths.empty();
+  input_.classes = has_classes_ ? input_.dataset.class_paths : std::vector<std::string>{"object"};
+  visit_images(request_.folder, [&](const ImageRecord& image) {
+    if (!image.split.empty()) splits_.insert(image.split);
+  });
+  has_splits_ = !splits_.empty();
+  for (const std::string& split : request_.splits)
+    if (!splits_.contains(split))
+      fail(ErrorKind::usage, "--split: wanted {}, got {}",
+           has_splits_ ? fmt::format("{}", fmt::join(splits_, " or "))
+                       : "none, the dataset has no splits",
+           split);
+  std::map<std::string, std::string> models;  // by stem
+  std::optional<std::vector<std::string>> kinds;
+  visit_images(request_.folder, [&](const ImageRecord& image) {
+    if (const std::string why = left_out(image); !why.empty()) {
+      ++result_.left_out[why];
+      return;
+    }
+    ++result_.images;
+    ++input_.splits[split_of(image)];
+    const std::string stem = export_key(image.model, image.model, false);
+    if (const auto [at, is_new] = models.try_emplace(stem, image.model);
+        !is_new && at->second != image.model)
+      shared_stems_.insert(stem);
+    std::vector<std::string> own;
+    for (const FileRecord& file : image.files)
+      if (!kinds || std::find(kinds->begin(), kinds->end(), file.kind) != kinds->end())
+        own.push_back(file.kind);
+    kinds = own;
+  });
+  input_.kinds = kinds.value_or(std::vector<std::string>{});
+  result_.splits = input_.splits;
+}
+
+void Export::check_found() const {
+  if (result_.images == 0) {
+    std::string why;
+    for (const auto& [what, count] : result_.left_out)
+      why += fmt::format("{}{} by {}", why.empty() ? "" : ", ", count, what);
+    fail(ErrorKind::usage, "{}: no image to export{}", request_.folder.string(),
+         why.empty() ? "" : fmt::format(" (left out: {})", why));
+  }
+  for (const char* kind : type_->needs)
+    if (!input_.has(kind))
+      fail(ErrorKind::asset,
+           "{}: the format {} needs the file \"{}\" of every image, and the dataset has {}; build "
+           "it "
+           "with that output",
+           request_.folder.string(), type_->name, kind,
+           input_.kinds.empty() ? "none" : fmt::format("{}", fmt::join(input_.kinds, ", ")));
+}
+
+std::string Export::key_of(const ImageRecord& image) const {
+  return export_key(image.id, image.model,
+                    shared_stems_.contains(export_key(image.model, image.model, false)));
+}
+
+std::string Export::record(const ExportFolder& to) const {
+  nlohmann::json filters = nlohmann::json::array();
+  for (const auto& [key, pattern] : request_.filters)
+    filters.push_back(key + "=" + pattern);
+  return canonical_json({{"format", type_->name},
+                         {"dataset", input_.dataset.name},
+                         {"dsbuild_version", input_.dataset.dsbuild_version},
+                         {"splits", input_.splits},
+                         {"classes", input_.classes},
+                         {"filters", filters},
+                         {"images", result_.images},
+                         {"left_out", result_.left_out},
+                         {"notes", to.notes()}},
+                        2);
+}
+
+ExportResult Export::run(const std::function<void(std::uint64_t, std::uint64_t)>& progress,
+                         const std::atomic<bool>& stop) {
+  look();
+  check_found();
+  ExportFolder to(request_.folder, request_.to, request_.copy);
+  const std::unique_ptr<Exporter> exporter = type_->make(input_, to);
+  std::set<std::string> keys;
+  std::uint64_t done = 0;
+  visit_images(request_.folder, [&](ImageRecord&& record) {
+    if (!left_out(record).empty()) return;
+    if (stop) fail(ErrorKind::cancelled, "stopped; nothing is exported");
+    ExportImage image{std::move(record), "", "", 0};
+    image.key = key_of(image.record);
+    if (!keys.insert(image.key).second)
+      fail(ErrorKind::asset, "the images {} and another would both be exported as {}",
+           image.record.id, image.key);
+    image.split = split_of(image.record);
+    if (has_classes_) {
+      const auto at =
+          std::lower_bound(input_.classes.begin(), input_.classes.end(), image.record.class_path);
+      if (at == input_.classes.end() || *at != image.record.class_path)
+        fail(ErrorKind::asset,
+             "{}: the image {} is of the class {}, which the dataset does not have",
+             (request_.folder / "manifest/dataset.json").string(), image.record.id,
+             image.record.class_path);
+      image.label = static_cast<int>(at - input_.classes.begin());
+    }
+    exporter->add(image);
+    progress(++done, result_.images);
+  });
+  exporter->finish();
+  write_card(input_, *type_, to);
+  to.commit(record(to));
+  result_.files = to.files();
+  result_.bytes = to.bytes();
+  result_.notes = to.notes();
+  return result_;
+}
+
+}  // namespace
+
+std::string export_key(std::string_view id, std::string_view model, bool with_ending) {
+  const std::size_t dot = model.rfind('.');
+  const bool has_ending = dot != model.npos && dot > model.rfind('/') + 1;
+  std::string key(has_ending && !with_ending ? model.substr(0, dot) : model);
+  key += id.substr(std::min(id.size(), model.size()));
+  for (std::size_t i = 0; i < key.size(); ++i) {
+    const auto c = static_cast<unsigned char>(key[i]);
+    if (c == '/')
+      key[i] = '-';
+    else if (c <= ' ' || c == 0x7f || c == '.' || c == '\\')
+      key[i] = '_';
+  }
+  return key;
+}
+
+bool matches_pattern(std::string_view text, std::string_view pattern) {
+  std::size_t star = pattern.npos, from = 0, t = 0, p = 0;
+  while (t < text.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      from = t;
+    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == text[t])) {
+      ++p;
+      ++t;
+    } else if (star != pattern.npos) {
+      p = star + 1;
+      t = ++from;
+    } else {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*')
+    ++p;
+  return p == pattern.size();
+}
+
+ExportResult export_dataset(const ExportRequest& request,
+                            const std::function<void(std::uint64_t, std::uint64_t)>& progress,
+                            const std::atomic<bool>& stop) {
+  return Export(request).run(progress, stop);
+}
+
+}  // namespace ds

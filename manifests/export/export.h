@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ds {
+
+struct ExportRequest {
+  std::filesystem::path folder;  ///< of the dataset: its manifest and files are enough
+  std::filesystem::path to;
+  std::string format;               ///< of exporter_types()
+  std::vector<std::string> splits;  ///< these only; empty: all
+  /// ("class", "vehicle/*"): images of which that matches one pattern of each key that is named. Keys:
+  /// class, model, material, environment, view. Patterns: * any text, ? any character.
+  std::vector<std::pair<std::string, std::string>> filters;
+  bool copy = false;
+};
+
+struct ExportResult {
+  std::uint64_t images = 0, files = 0, bytes = 0;
+  std::map<std::string, std::uint64_t> splits;  ///< images of each
+  /// Images that are not exported, by why: "split", "filter", "unclassified".
+  std::map<std::string, std::uint64_t> left_out;
+  std::vector<std::string> notes;
+};
+
+/// Writes the dataset in a format that training jobs read. Depends on the dataset's files alone, and so
+/// do its bytes. Throws Error(usage) for a format, split or key of a filter that is not there, an export
+/// that would hold no image, and a folder that is in the way; Error(asset) where the dataset lacks what
+/// the format needs, or a file is not what the manifest says. `progress`: images done of all. Stopped,
+/// it throws Error(cancelled) and leaves nothing behind.
+ExportResult export_dataset(const ExportRequest& request,
+                            const std::function<void(std::uint64_t, std::uint64_t)>& progress,
+                            const std::atomic<bool>& stop);
+
+/// "mug-1-3" of the image "mug.ply/1-3" of the model "mug.ply"; "mug_ply-1-3" with the ending.
+std::string export_key(std::string_view id, std::string_view model, bool with_ending);
+
+/// Whether the text is what the pattern says: * any text, ? any one character, else itself.
+bool matches_pattern(std::string_view text, std::string_view pattern);
+
+}  // namespace ds

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "manifests/export/export_folder.h"
+#include "manifests/manifest.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace ds {
+
+/// Of 8 bit samples, one a pixel, row by row from the top: 255 where the model is seen.
+struct MaskPixels {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> values;
+};
+/// x and y of the first pixel, width and height in pixels; nothing of a mask that shows nothing.
+std::optional<std::array<int, 4>> tight_box(const MaskPixels& mask);
+
+/// An image of the dataset that is exported.
+struct ExportImage {
+  ImageRecord record;
+  /// "mug-1-3": one name for all formats, of no dot, slash or blank, no two images' the same.
+  std::string key;
+  std::string split;  ///< "train", "test"; "train" in a dataset that has no splits
+  int label = 0;      ///< of ExportInput::classes
+};
+
+/// What is exported, the same for all of its images.
+struct ExportInput {
+  std::filesystem::path folder;  ///< the dataset's
+  DatasetRecord dataset;
+  /// Class paths, sorted: a label is the index of one. {"object"} in a dataset without classes.
+  std::vector<std::string> classes;
+  std::map<std::string, std::uint64_t> splits;  ///< images that are exported, by split
+  /// Kinds of files that every image has, "image" first.
+  std::vector<std::string> kinds;
+
+  bool has(const std::string& kind) const;
+};
+
+/// Writes one format into a folder. Images come ordered by id.
+class Exporter {
+ public:
+  virtual ~Exporter() = default;
+  virtual void add(const ExportImage& image) = 0;
+  virtual void finish() = 0;
+};
+
+/// A format of `dsbuild export`: NAME.cc and its line in CMakeLists.txt.
+struct ExporterType {
+  const char* name;
+  const char* help;                ///< one line
+  std::vector<const char*> needs;  ///< kinds of files without which there is no such export
+  std::unique_ptr<Exporter> (*make)(const ExportInput& input, ExportFolder& to);
+};
+
+/// `make` of a format.
+template <typename T>
+std::unique_ptr<Exporter> make_exporter(const ExportInput& input, ExportFolder& to) {
+  return std::make_unique<T>(input, to);
+}
+
+/// In alphabetical order.
+std::span<const ExporterType> exporter_types();
+/// Null where there is none of this name.
+const ExporterType* find_exporter(std::string_view name);
+
+/// The image's file of that kind, which must be there.
+const FileRecord& file_of(const ExportImage& image, std::string_view kind);
+/// ".png" of "images/mug.ply/0.mask.png".
+std::string ending_of(const FileRecord& file);
+/// The mask as it lies in the dataset; Error(asset) where its bytes are not those of the manifest.
+MaskPixels read_mask(const ExportInput& input, const ExportImage& image);
+
+}  // namespace ds

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "manifests/export/sample_fields.h"
+
+namespace ds {
+namespace {
+
+/// Row-major numbers as nested rows.
+template <std::size_t N>
+nlohmann::json rows_of(const std::array<double, N>& values, std::size_t columns) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (std::size_t i = 0; i < N; i += columns)
+    rows.push_back(std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(i),
+                                       values.begin() + static_cast<std::ptrdiff_t>(i + columns)));
+  return rows;
+}
+
+}  // namespace
+
+nlohmann::json sample_fields(const ExportInput& input, const ExportImage& image) {
+  const ImageRecord& record = image.record;
+  nlohmann::json fields{{"id", record.id},
+                        {"split", image.split},
+                        {"label", image.label},
+                        {"class_path", record.class_path},
+                        {"model", record.model},
+                        {"material", record.material},
+                        {"environment", record.environment},
+                        {"view", record.view},
+                        {"seed", record.seed},
+                        {"spp", record.spp},
+                        {"width", record.width},
+                        {"height", record.height},
+                        {"intrinsics", rows_of(record.intrinsics, 3)},
+                        {"camera_to_world", rows_of(record.camera_to_world, 4)},
+                        {"relative_error", nullptr}};
+  if (record.relative_error) fields["relative_error"] = *record.relative_error;
+  if (!input.has("mask")) return fields;
+  const auto box = tight_box(read_mask(input, image));
+  fields["bbox"] = box ? nlohmann::json(*box) : nlohmann::json();
+  return fields;
+}
+
+std::string place_of_kind(const ExportImage& image, const std::string& kind) {
+  return fmt::format("{}/{}{}", kind == "image" ? "images" : kind, image.key,
+                     ending_of(file_of(image, kind)));
+}
+
+}  // namespace ds

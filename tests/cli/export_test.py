@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: Apache-2.0
+"""dsbuild export: each format as a reader of its own sees it, and the folder whole or not at all."""
+import csv
+import json
+import os
+import shutil
+import signal
+import tarfile
+import time
+
+import image_reader
+from harness import IMAGES, TinyCase, main
+
+FORMATS = ["coco", "csv", "imagefolder", "nerf", "parquet", "webdataset", "yolo"]
+TRAIN = "PSB 1\n2 1\nsolid 0 0\nbox solid 1\nbox\n"
+TEST = "PSB 1\n2 1\nsolid 0 0\nspike solid 1\ntetra\n"
+CLASSES = ["solid/box", "solid/spike"]
+
+
+def decode_runs(counts, height, width):
+    """COCO's compressed run lengths, by their definition: rows of 0 and 1."""
+    runs, at = [], 0
+    while at < len(counts):
+        value, shift, more = 0, 0, True
+        while more:
+            digit = ord(counts[at]) - 48
+            value |= (digit & 31) << shift
+            more = bool(digit & 32)
+            shift += 5
+            at += 1
+            if not more and digit & 16:
+                value -= 1 << shift
+        runs.append(value + (runs[-2] if len(runs) > 2 else 0))
+    flat = [i % 2 for i, run in enumerate(runs) for _ in range(run)]
+    assert len(flat) == height * width, (len(flat), height, width)
+    return [[flat[x * height + y] for x in range(width)] for y in range(height)]
+
+
+class ExportTest(TinyCase):
+    def setUp(self):
+        super().setUp()
+        (self.tiny / "train.cla").write_text(TRAIN)
+        (self.tiny / "test.cla").write_text(TEST)
+        self.edit("recipe.toml", "[materials]",
+                  '[classes]\ntrain = "train.cla"\ntest = "test.cla"\n\n[materials]')
+        self.build()
+        self.to = self.folder / "export"
+
+    def export(self, format, *arguments, code=0, target=None):
+        run = self.run_it("export", target or self.out, "--format", format, "-o", self.to, "--json", *arguments)
+        self.assertEqual(run.code, code, run)
+        return run.json
+
+    def records(self):
+        return [json.loads(line) for line in (self.out / "manifest/images.jsonl").read_text().splitlines()]
+
+    def rows(self, path):
+        """Rows of a grey PNG, 0 and 1."""
+        width, height, channels, _, samples = image_reader.read_png(path)
+        self.assertEqual(channels, 1)
+        return [[1 if v else 0 for v in samples[y * width:(y + 1) * width]] for y in range(height)]
+
+    def mask(self, record):
+        return self.rows(self.out / next(f["path"] for f in record["files"] if f["kind"] == "mask"))
+
+    def box(self, rows):
+        ys = [y for y, row in enumerate(rows) if any(row)]
+        xs = [x for x in range(len(rows[0])) if any(row[x] for row in rows)]
+        return [xs[0], ys[0], xs[-1] - xs[0] + 1, ys[-1] - ys[0] + 1]
+
+    def key(self, record):
+        return record["model"].rsplit(".", 1)[0] + "-" + record["view"]
+
+    def test_every_format_whole_the_same_twice_and_verified(self):
+        for format in FORMATS:
+            told = self.export(format)
+            self.assertEqual((told["images"], told["left_out"]), (IMAGES, {}), format)
+            self.assertEqual(told["splits"], {"test": IMAGES // 2, "train": IMAGES // 2})
+            files = self.contents(self.to)
+            self.assertIn("README.md", files)
+            self.assertEqual(told["files"], len(files) - 1)  # its own checksums are listed nowhere
+            run = self.run_it("verify", self.to)
+            self.assertEqual(run.code, 0, run)
+            self.export(format, "--copy")
+            self.assertEqual(self.contents(self.to), files, format)
+            self.assertEqual([p.name for p in self.folder.iterdir() if p.name.startswith(".")], [])
+            victim = next(path for path in sorted(files) if path.endswith((".png", ".tar", ".parquet")))
+            (self.to / victim).unlink()
+            (self.to / victim).write_bytes(b"mine")
+            (self.to / "extra").write_bytes(b"")
+            run = self.run_it("verify", self.to)
+            self.assertEqual(run.code, 1, run)
+            self.assertIn(f"changed: {victim}", run.out)
+            self.assertIn("extra: extra", run.out)
+            shutil.rmtree(self.to)
+        self.assertEqual(self.run_it("verify", self.out).code, 0)
+
+    def test_coco(self):
+        self.export("coco")
+        seen = {}
+        for split in ("train", "test"):
+            told = json.loads((self.to / f"annotations/instances_{split}.json").read_text())
+            self.assertEqual([c["name"] for c in told["categories"]], CLASSES)
+            self.assertEqual([c["id"] for c in told["categories"]], [1, 2])
+            self.assertEqual(told["categories"][1]["supercategory"], "solid")
+            by_image = {a["image_id"]: a for a in told["annotations"]}
+            self.assertEqual(len(by_image), len(told["annotations"]))
+            for image in told["images"]:
+                self.assertTrue((self.to / "images" / split / image["file_name"]).is_file())
+                seen[image["dsbuild_id"]] = (split, image, by_image[image["id"]])
+        self.assertEqual(len({image["id"] for _, image, _ in seen.values()}), IMAGES)
+        for record in self.records():
+            split, image, annotation = seen[record["id"]]
+            mask = self.mask(record)
+            self.assertEqual(split, record["split"])
+            self.assertEqual(image["file_name"], self.key(record) + ".png")
+            self.assertEqual(annotation["category_id"], CLASSES.index(record["class_path"]) + 1)
+            self.assertEqual(annotation["bbox"], self.box(mask))
+            self.assertEqual(annotation["area"], sum(map(sum, mask)))
+            segmentation = annotation["segmentation"]
+            self.assertEqual(segmentation["size"], [record["height"], record["width"]])
+            self.assertEqual(decode_runs(segmentation["counts"], *segmentation["size"]), mask)
+
+    def test_yolo(self):
+        self.export("yolo")
+        text = (self.to / "data.yaml").read_text()
+        self.assertEqual(text, 'train: images/train\nval: images/test\ntest: images/test\nnames:\n'
+                               '  0: "solid/box"\n  1: "solid/spike"\n')
+        for record in self.records():
+            name = f"{record['split']}/{self.key(record)}"
+            self.assertTrue((self.to / "images" / (name + ".png")).is_file())
+            numbers = (self.to / "labels" / (name + ".txt")).read_text().split()
+            self.assertEqual(CLASSES[int(numbers[0])], record["class_path"])
+            cx, cy, w, h = map(float, numbers[1:])
+            x, y, width, height = self.box(self.mask(record))
+            for found, wanted in ((cx * record["width"], x + width / 2), (cy * record["height"], y + height / 2),
+                                  (w * record["width"], width), (h * record["height"], height)):
+                self.assertAlmostEqual(found, wanted, 9)
+        self.assertEqual(list((self.to / "images").rglob("*mask*")), [])
+
+    def test_imagefolder_and_csv(self):
+        self.export("imagefolder")
+        lines = [json.loads(line) for split in ("train", "test")
+                 for line in (self.to / split / "metadata.jsonl").read_text().splitlines()]
+        self.assertEqual({tuple(sorted(line)) for line in lines}, {tuple(sorted(lines[0]))})
+        by_id = {line["id"]: line for line in lines}
+        for record in self.records():
+            line = by_id[record["id"]]
+            self.assertEqual((line["label"], line["class_path"], line["bbox"]),
+                             (CLASSES.index(record["class_path"]), record["class_path"], self.box(self.mask(record))))
+            self.assertEqual(line["intrinsics"], record["intrinsics"])
+            for kind, field in (("image", "file_name"), ("mask", "mask_file_name")):
+                source = next(f["path"] for f in record["files"] if f["kind"] == kind)
+                self.assertEqual((self.to / line["split"] / line[field]).read_bytes(),
+                                 (self.out / source).read_bytes())
+        # Every float is written as one: readers take the type from the first line.
+        self.assertNotRegex((self.to / "train/metadata.jsonl").read_text(), r'"camera_to_world":\[\[-?\d+,')
+        self.export("csv")
+        with open(self.to / "images.csv", newline="") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual(len(table), IMAGES)
+        for row in table:
+            self.assertEqual(json.loads(row["camera_to_world"]), by_id[row["id"]]["camera_to_world"])
+            self.assertTrue((self.to / row["image_file"]).is_file())
+            self.assertTrue((self.to / row["mask_file"]).is_file())
+
+    def test_webdataset(self):
+        self.export("webdataset")
+        self.assertEqual(sorted(p.name for p in self.to.glob("*.tar")),
+                         ["tiny-test-000000.tar", "tiny-train-000000.tar"])
+        samples = {}
+        for path in self.to.glob("*.tar"):
+            with tarfile.open(path) as tar:
+                keys = []
+                for member in tar:
+                    self.assertEqual((member.mtime, member.uid, member.gid, member.mode), (0, 0, 0, 0o644))
+                    key, ending = member.name.split(".", 1)
+                    if not keys or keys[-1] != key:
+                        keys.append(key)
+                    samples.setdefault(key, {})[ending] = tar.extractfile(member).read()
+                self.assertEqual(len(keys), len(set(keys)), "a sample's members follow each other")
+        self.assertEqual({tuple(sorted(s)) for s in samples.values()}, {("cls", "json", "mask.png", "png")})
+        for record in self.records():
+            sample = samples[self.key(record)]
+            self.assertEqual((CLASSES[int(sample["cls"])], json.loads(sample["json"])["id"]), (record["class_path"], record["id"]))
+            source = next(f["path"] for f in record["files"] if f["kind"] == "image")
+            self.assertEqual(sample["png"], (self.out / source).read_bytes())
+
+    def test_nerf(self):
+        """A point of the world lands on one pixel by the manifest's pose and by the scene's."""
+        told = self.export("nerf")
+        frames = {}
+        for path in self.to.rglob("transforms.json"):
+            scene = json.loads(path.read_text())
+            listed = [name for split in ("train", "val", "test") for name in scene.get(split + "_filenames", [])]
+            for frame in scene["frames"]:
+                self.assertTrue((path.parent / frame["file_path"]).is_file())
+                self.assertTrue((path.parent / frame["mask_path"]).is_file())
+                if listed:
+                    self.assertIn(frame["file_path"], listed)
+                frames[os.path.basename(frame["file_path"])[:-4]] = (scene, frame)
+        self.assertEqual(len(frames), IMAGES)
+        for record in self.records():
+            scene, frame = frames[self.key(record)]
+            point = (0.01, -0.02, 0.03)
+
+            def camera(pose):
+                way = [point[i] - pose[i][3] for i in range(3)]
+                return [sum(pose[i][axis] * way[i] for i in range(3)) for axis in range(3)]
+
+            x, y, z = camera(record["camera_to_world"])
+            gx, gy, gz = camera(frame["transform_matrix"])
+            k = record["intrinsics"]
+            self.assertAlmostEqual(k[0][0] * x / z + k[0][2], scene["fl_x"] * gx / -gz + scene["cx"], 9)
+            self.assertAlmostEqual(k[1][1] * y / z + k[1][2], scene["fl_y"] * -gy / -gz + scene["cy"], 9)
+        self.assertEqual(told["notes"], ["scenes of a single view teach no depth: materials.per and "
+                                         "environments.per = \"model\" keep a model's views together"]
+                         if any(len(s["frames"]) < 2 for s, _ in frames.values()) else [])
+
+    def test_splits_and_filters(self):
+        told = self.export("csv", "--split", "test")
+        self.assertEqual((told["images"], told["left_out"]), (IMAGES // 2, {"split": IMAGES // 2}))
+        told = self.export("csv", "--filter", "model=b*", "--filter", "view=0", "--filter", "view=2")
+        self.assertEqual((told["images"], told["left_out"]), (2, {"filter": 6}))
+        for arguments, message in ((["--split", "val"], "--split: wanted test or train, got val"),
+                                   (["--filter", "clas=x"], "did you mean class?"),
+                                   (["--filter", "model"], "wanted KEY=PATTERN"),
+                                   (["--filter", "model=none"], "no image to export (left out: 8 by filter)")):
+            run = self.run_it("export", self.out, "--format", "csv", "-o", self.folder / "other", *arguments)
+            self.assertEqual(run.code, 2, run)
+            self.assertIn(message, run.err)
+        run = self.run_it("export", self.out, "--format", "cocco", "-o", self.folder / "other")
+        self.assertIn("did you mean coco?", run.err)
+        self.assertFalse((self.folder / "other").exists())
+
+    def test_what_is_in_the_way_and_what_is_missing(self):
+        self.to.mkdir()
+        (self.to / "mine").write_text("mine")
+        run = self.run_it("export", self.out, "--format", "csv", "-o", self.to)
+        self.assertEqual(run.code, 2, run)
+        self.assertEqual((self.to / "mine").read_text(), "mine")
+        shutil.rmtree(self.to)
+        # A damaged picture ends it, and names the file.
+        picture = self.out / "images/box.off/1.png"
+        whole = picture.read_bytes()
+        picture.unlink()
+        picture.write_bytes(whole[:-20])
+        run = self.run_it("export", self.out, "--format", "imagefolder", "-o", self.to)
+        self.assertEqual(run.code, 1, run)
+        self.assertIn("images/box.off/1.png: is not what the manifest says", run.err)
+        self.assertFalse(self.to.exists())
+        self.build("--set", "outputs.mask=false")
+        run = self.run_it("export", self.out, "--format", "coco", "-o", self.to)
+        self.assertIn('needs the file "mask" of every image, and the dataset has image', run.err)
+        self.assertEqual([p.name for p in self.folder.iterdir() if p.name.startswith(".")], [])
+
+    def test_a_dataset_that_is_behind_is_said_to_be(self):
+        self.edit("materials/red.mat", "kd = 0.7 0.1 0.1", "kd = 0.6 0.1 0.1")
+        run = self.run_it("export", self.recipe, "--format", "csv", "-o", self.to)
+        self.assertEqual(run.code, 2, run)  # its dataset would be out/tiny
+        run = self.run_it("export", self.out, "--format", "csv", "-o", self.to)
+        self.assertEqual(run.code, 0, run)
+        self.assertIn("of 8 images are not as their recipe wants them", run.err)
+
+    def test_killed_at_any_moment(self):
+        self.export("coco")
+        before = self.contents(self.to)
+        for delay in (0.02, 0.05, 0.1, 0.2):
+            process = self.start("export", self.out, "--format", "imagefolder", "-o", self.to)
+            time.sleep(delay)
+            process.send_signal(signal.SIGKILL)
+            process.communicate()
+            files = self.contents(self.to)
+            if "annotations/instances_test.json" in files:
+                self.assertEqual(files, before)
+            self.assertEqual(self.run_it("verify", self.to).code, 0)
+        self.export("coco")
+        self.assertEqual(self.contents(self.to), before)
+        self.assertEqual([p.name for p in self.folder.iterdir() if p.name.startswith(".")], [])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Exports as their real consumers read them: pycocotools, Hugging Face datasets, webdataset."""
+import contextlib
+import io
+import json
+import os
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "cli"))
+os.environ["HF_HUB_OFFLINE"] = "1"  # nothing here is to ask a server
+
+import datasets
+import numpy
+import pyarrow.parquet as parquet
+import webdataset
+from harness import IMAGES, TinyCase, main
+from huggingface_hub import DatasetCard
+from PIL import Image
+from pycocotools.coco import COCO
+from pycocotools.cocoeval import COCOeval
+
+
+CLASSES = ["solid/box", "solid/spike"]
+
+
+class ConsumersTest(TinyCase):
+    def setUp(self):
+        super().setUp()
+        (self.tiny / "train.cla").write_text("PSB 1\n2 1\nsolid 0 0\nbox solid 1\nbox\n")
+        (self.tiny / "test.cla").write_text("PSB 1\n2 1\nsolid 0 0\nspike solid 1\ntetra\n")
+        self.edit("recipe.toml", "[materials]",
+                  '[classes]\ntrain = "train.cla"\ntest = "test.cla"\n\n[materials]')
+        self.build()
+        lines = (self.out / "manifest/images.jsonl").read_text().splitlines()
+        self.records = {record["id"]: record for record in map(json.loads, lines)}
+        self.to = self.folder / "export"
+
+    def export(self, format):
+        run = self.run_it("export", self.out, "--format", format, "-o", self.to)
+        self.assertEqual(run.code, 0, run)
+
+    def picture(self, record, kind="image"):
+        path = next(file["path"] for file in record["files"] if file["kind"] == kind)
+        return numpy.asarray(Image.open(self.out / path))
+
+    def load(self, *arguments, **options):
+        return datasets.load_dataset(*arguments, cache_dir=str(self.folder / "cache"), **options)
+
+    def test_coco(self):
+        self.export("coco")
+        seen = 0
+        for split in ("train", "test"):
+            with contextlib.redirect_stdout(io.StringIO()):
+                coco = COCO(str(self.to / f"annotations/instances_{split}.json"))
+                # The truth as its own result must be found perfectly.
+                result = coco.loadRes([{"image_id": a["image_id"], "category_id": a["category_id"], "score": 1.0,
+                                        "segmentation": a["segmentation"], "bbox": a["bbox"]}
+                                       for a in coco.dataset["annotations"]])
+                for kind in ("bbox", "segm"):
+                    score = COCOeval(coco, result, kind)
+                    score.evaluate()
+                    score.accumulate()
+                    score.summarize()
+                    self.assertEqual(score.stats[0], 1.0, kind)
+            for image in coco.dataset["images"]:
+                [annotation] = coco.loadAnns(coco.getAnnIds(imgIds=image["id"], iscrowd=False))
+                mask = self.picture(self.records[image["dsbuild_id"]], "mask") != 0
+                numpy.testing.assert_array_equal(coco.annToMask(annotation), mask)
+                self.assertEqual(annotation["area"], mask.sum())
+                seen += 1
+        self.assertEqual(seen, IMAGES)
+
+    def test_imagefolder(self):
+        self.export("imagefolder")
+        DatasetCard.load(self.to / "README.md")
+        loaded = self.load("imagefolder", data_dir=str(self.to))
+        self.assertEqual({split: len(rows) for split, rows in loaded.items()},
+                         {"train": IMAGES // 2, "test": IMAGES // 2})
+        for split, rows in loaded.items():
+            for row in rows:
+                record = self.records[row["id"]]
+                self.assertEqual((record["split"], CLASSES[row["label"]], row["class_path"]),
+                                 (split, record["class_path"], record["class_path"]))
+                numpy.testing.assert_array_equal(numpy.asarray(row["image"]), self.picture(record))
+                numpy.testing.assert_array_equal(numpy.asarray(row["mask"]), self.picture(record, "mask"))
+                self.assertEqual(row["camera_to_world"], record["camera_to_world"])
+
+    def test_parquet(self):
+        self.export("parquet")
+        table = parquet.read_table(self.to / "data/train-00000.parquet")
+        self.assertEqual(table.num_rows, IMAGES // 2)
+        loaded = self.load("parquet", data_files={split: str(self.to / f"data/{split}-*.parquet")
+                                                  for split in ("train", "test")})
+        self.assertEqual(loaded["train"].features["label"].names, CLASSES)
+        seen = set()
+        for split, rows in loaded.items():
+            for row in rows:
+                record = self.records[row["id"]]
+                seen.add(row["id"])
+                self.assertEqual((record["split"], CLASSES[row["label"]]), (split, record["class_path"]))
+                for kind in ("image", "mask"):
+                    numpy.testing.assert_array_equal(numpy.asarray(row[kind]), self.picture(record, kind))
+                self.assertEqual((row["camera_to_world"], row["intrinsics"]),
+                                 (record["camera_to_world"], record["intrinsics"]))
+                ys, xs = numpy.nonzero(self.picture(record, "mask"))
+                self.assertEqual(row["bbox"], [xs.min(), ys.min(), numpy.ptp(xs) + 1, numpy.ptp(ys) + 1])
+        self.assertEqual(seen, set(self.records))
+
+    def test_webdataset(self):
+        self.export("webdataset")
+        seen = set()
+        for split in ("train", "test"):
+            pattern = str(self.to / f"tiny-{split}-000000.tar")
+            for sample in webdataset.WebDataset(pattern, shardshuffle=False).decode("rgb8"):
+                record = self.records[sample["json"]["id"]]
+                seen.add(record["id"])
+                self.assertEqual((CLASSES[sample["cls"]], record["split"]), (record["class_path"], split))
+                numpy.testing.assert_array_equal(sample["png"], self.picture(record))
+        self.assertEqual(seen, set(self.records))
+        loaded = self.load("webdataset", data_files={"train": str(self.to / "tiny-train-*.tar")})
+        for row in loaded["train"]:
+            numpy.testing.assert_array_equal(numpy.asarray(row["png"]), self.picture(self.records[row["json"]["id"]]))
+
+
+if __name__ == "__main__":
+    main()

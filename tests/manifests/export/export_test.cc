@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "manifests/export/export.h"
+
+#include "manifests/export/run_lengths.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace ds {
+namespace {
+
+using testing::ElementsAre;
+
+TEST(ExportKey, IsOneWordWithoutDots) {
+  EXPECT_EQ(export_key("mug.ply/1", "mug.ply", false), "mug-1");
+  EXPECT_EQ(export_key("mug.ply/1-red-room", "mug.ply", false), "mug-1-red-room");
+  EXPECT_EQ(export_key("mug.ply/1", "mug.ply", true), "mug_ply-1");
+  EXPECT_EQ(export_key("my mug.v2.ply/1", "my mug.v2.ply", false), "my_mug_v2-1");
+  EXPECT_EQ(export_key("chairs/a.off/3", "chairs/a.off", false), "chairs-a-3");
+  EXPECT_EQ(export_key("v1.0/a/3", "v1.0/a", false), "v1_0-a-3");
+  EXPECT_EQ(export_key("t\xc3\xbcr.off/0", "t\xc3\xbcr.off", false), "t\xc3\xbcr-0");
+}
+
+TEST(Patterns, AreGlobs) {
+  EXPECT_TRUE(matches_pattern("vehicle/car", "vehicle/*"));
+  EXPECT_TRUE(matches_pattern("", "*"));
+  EXPECT_TRUE(matches_pattern("abcabd", "*ab?"));
+  EXPECT_TRUE(matches_pattern("abc", "a**c"));
+  EXPECT_FALSE(matches_pattern("abc", "ab"));
+  EXPECT_FALSE(matches_pattern("", "?"));
+  EXPECT_FALSE(matches_pattern("vehicle", "vehicle/*"));
+}
+
+// Worked by hand after COCO's definition: columns, first the zeros.
+TEST(RunLengths, GoDownTheColumns) {
+  const MaskPixels mask{3,
+                        2,
+                        {0, 1, 1,  //
+                         0, 0, 1}};
+  EXPECT_THAT(run_lengths(mask), ElementsAre(2u, 1u, 1u, 2u));
+  EXPECT_EQ(area_of(mask), 3u);
+  EXPECT_EQ(*tight_box(mask), (std::array{1, 0, 2, 2}));
+  EXPECT_THAT(run_lengths({1, 2, {7, 0}}), ElementsAre(0u, 1u, 1u));
+  EXPECT_THAT(run_lengths({2, 1, {0, 0}}), ElementsAre(2u));
+  EXPECT_EQ(tight_box({2, 1, {0, 0}}), std::nullopt);
+}
+
+// 2 -> '2'; 1 -> '1'; 1 -> '1'; 2 - 1 -> '1'. 40 = 8 + 32, so 'X' (8 + 32 + 48) and '1'. 16 needs a
+// second character, since bit 4 of the last is the sign. -16 is one, 'P' - ... : 16 + 48 = '@'.
+TEST(RunLengths, AreWrittenInFiveBits) {
+  EXPECT_EQ(run_length_text({2, 1, 1, 2}), "2111");
+  EXPECT_EQ(run_length_text({40}), "X1");
+  EXPECT_EQ(run_length_text({16}), "`0");
+  EXPECT_EQ(run_length_text({0, 17, 5, 1}), "0a05@");
+}
+
+}  // namespace
+}  // namespace ds
