@@ -22,7 +22,7 @@ struct Arguments {
   std::string shard = "1/1";
   std::uint64_t rerender = 0, seed = 0;
   std::string format, export_folder;
-  std::vector<std::string> splits, filters;
+  std::vector<std::string> splits, filters, only;
   std::string report_file, against;
   int most_spp = 0, seeds = 4;
   bool no_choices = false;
@@ -68,6 +68,7 @@ enum class Option {
   export_folder,
   splits,
   filters,
+  only,
   report_file,
   against,
   report_size,  ///< how much is measured

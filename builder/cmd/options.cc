@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/command_line.h"
+#include "manifests/check/check.h"
 #include "manifests/export/exporter.h"
 #include "tracer/base/error.h"
 #include "tracer/base/nearest.h"
@@ -53,6 +54,13 @@ void add_word(CLI::App& verb, const char* name, std::string& to,
     to = text;
   };
   verb.add_option_function<std::string>(name, read, help)->type_name("WHAT");
+}
+
+std::vector<std::string_view> check_names() {
+  std::vector<std::string_view> names;
+  for (const Check& check : checks())
+    names.emplace_back(check.name);
+  return names;
 }
 
 std::vector<std::string_view> format_names() {
@@ -184,6 +192,13 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
                       "class=vehicle/* (repeatable: of one key any, of several all)")
           ->allow_extra_args(false)
           ->type_name("KEY=PATTERN");
+      return;
+    case Option::only:
+      verb.add_option(
+              "--only", to.only,
+              fmt::format("run this check only (repeatable): {}", fmt::join(check_names(), ", ")))
+          ->allow_extra_args(false)
+          ->type_name("CHECK");
       return;
     case Option::report_file:
       verb.add_option("-o,--output", to.report_file,

@@ -214,6 +214,26 @@ class ConcernsTest(TinyCase):
         (self.tiny / "test.cla").write_text("PSB 1\n1 1\nsolid 0 1\nbox.ply\n")
         self.assertEqual(self.concerns("--strict")[0], NONE)
 
+    def test_check_tells_what_misleads_a_training(self):
+        """tetra is for training, the same mesh in another format for the test."""
+        ply = (self.tiny / "models/tetra.ply").read_text()
+        (self.tiny / "models/twin.ply").write_text(ply.replace("element vertex", "comment a copy\nelement vertex"))
+        (self.tiny / "train.cla").write_text("PSB 1\n1 2\nsolid 0 2\ntetra\nbox\n")
+        (self.tiny / "test.cla").write_text("PSB 1\n1 1\nsolid 0 1\ntwin\n")
+        self.edit("recipe.toml", "[materials]", '[classes]\ntrain = "train.cla"\ntest = "test.cla"\n\n[materials]')
+        self.build()
+        run = self.run_it("check", self.out)
+        self.assertEqual(run.code, 1, run)
+        self.assertEqual(run.out.splitlines()[0], "error: leaks: 1 of 2 models are the same mesh in two splits: "
+                         "twin.ply (test), tetra.ply (train) (keep all copies of a model in one split)")
+        told = self.run_it("check", self.recipe, "-o", self.out, "--only", "leaks", "--json").json
+        self.assertEqual((told["errors"], told["findings"][0]["count"]), (1, 1))
+        (self.tiny / "test.cla").write_text("PSB 1\n1 0\nsolid 0 0\n")
+        self.build("--set", "classes.unlisted=skip")
+        self.assertEqual(self.run_it("check", self.out, "--only", "leaks").code, 0)
+        run = self.run_it("check", self.out, "--only", "leak")
+        self.assertEqual((run.code, "did you mean leaks?" in run.err), (2, True), run)
+
     def test_pictures_that_are_all_white(self):
         concerns, err = self.concerns("--set", "outputs.tone_map=linear", "--set", "outputs.tone_map_scale=1000")
         self.assertEqual(concerns["picture_white"], IMAGES)

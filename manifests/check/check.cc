@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "manifests/check/check.h"
+
+#include "manifests/check/check_list.h"
+#include "tracer/base/error.h"
+#include "tracer/base/nearest.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace ds {
+
+#define DS_DECLARE_CHECK(NAME) Check NAME##_check();
+DS_ALL_CHECKS(DS_DECLARE_CHECK)
+
+std::string_view name_of(CheckLevel level) {
+  switch (level) {
+    case CheckLevel::note:
+      return "note";
+    case CheckLevel::warning:
+      return "warning";
+    case CheckLevel::error:
+      return "error";
+  }
+  assertion_failed("a CheckLevel", __FILE__, __LINE__);
+}
+
+void CheckReport::add(CheckLevel level, std::string what, const std::vector<std::string>& found,
+                      std::uint64_t of, std::string advice) {
+  if (found.empty()) return;
+  const auto shown = static_cast<std::ptrdiff_t>(std::min(found.size(), k_check_examples));
+  findings_.push_back({check_,
+                       level,
+                       std::move(what),
+                       found.size(),
+                       of,
+                       {found.begin(), found.begin() + shown},
+                       std::move(advice)});
+}
+
+void CheckReport::say(CheckLevel level, std::string what, std::string advice) {
+  findings_.push_back({check_, level, std::move(what), 0, 0, {}, std::move(advice)});
+}
+
+std::span<const Check> checks() {
+#define DS_CHECK_ROW(NAME) NAME##_check(),
+  static const std::vector<Check> rows = {DS_ALL_CHECKS(DS_CHECK_ROW)};
+  return rows;
+}
+
+std::vector<CheckFinding> run_checks(const CheckInput& input,
+                                     const std::vector<std::string>& names) {
+  std::vector<std::string_view> known;
+  for (const Check& check : checks())
+    known.emplace_back(check.name);
+  for (const std::string& name : names)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      fail(ErrorKind::usage, "--only: wanted {}, got {}{}",
+           fmt::format("{}", fmt::join(known, ", ")), name, did_you_mean(name, known));
+  std::vector<CheckFinding> findings;
+  for (const Check& check : checks()) {
+    if (!names.empty() && std::find(names.begin(), names.end(), check.name) == names.end())
+      continue;
+    CheckReport report(check.name);
+    check.run(input, report);
+    std::vector<CheckFinding> found = std::move(report).take();
+    std::move(found.begin(), found.end(), std::back_inserter(findings));
+  }
+  return findings;
+}
+
+}  // namespace ds

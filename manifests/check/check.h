@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "manifests/manifest.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ds {
+
+enum class CheckLevel {
+  note,     ///< worth knowing, and often meant
+  warning,  ///< hardly what is wanted
+  error,    ///< the dataset misleads who trains or tests with it
+};
+std::string_view name_of(CheckLevel level);
+
+/// What a check found: `count` of `of` things, the first few of them by name.
+struct CheckFinding {
+  std::string check;
+  CheckLevel level = CheckLevel::note;
+  std::string what;  ///< "images whose mask is empty"
+  std::uint64_t count = 0, of = 0;
+  std::vector<std::string> examples{};
+  std::string advice{};  ///< what mends it; may be empty
+};
+inline constexpr std::size_t k_check_examples = 3;
+
+/// A dataset as its manifest tells it; all that is checked is known from there.
+struct CheckInput {
+  DatasetRecord dataset;
+  std::vector<ImageRecord> images;  ///< ordered by id
+};
+
+/// Collects what one check finds.
+class CheckReport {
+ public:
+  explicit CheckReport(std::string check) : check_(std::move(check)) {}
+
+  /// Things that were looked at one by one, of which `found` are concerned; nothing where none is.
+  void add(CheckLevel level, std::string what, const std::vector<std::string>& found,
+           std::uint64_t of, std::string advice = "");
+  /// Something about the dataset as a whole.
+  void say(CheckLevel level, std::string what, std::string advice = "");
+
+  std::vector<CheckFinding> take() && { return std::move(findings_); }
+
+ private:
+  std::string check_;
+  std::vector<CheckFinding> findings_;
+};
+
+/// A check of `dsbuild check`: NAME.cc and its line in CMakeLists.txt.
+struct Check {
+  const char* name;
+  const char* help;  ///< one line
+  void (*run)(const CheckInput& input, CheckReport& report);
+};
+
+/// In alphabetical order.
+std::span<const Check> checks();
+
+/// Runs all of them, or those named. Error(usage) for a name that is none.
+std::vector<CheckFinding> run_checks(const CheckInput& input,
+                                     const std::vector<std::string>& names);
+
+/// "mug.ply/3" of those images for which `is` holds.
+template <typename Is>
+std::vector<std::string> ids_where(const std::vector<ImageRecord>& images, const Is& is) {
+  std::vector<std::string> ids;
+  for (const ImageRecord& image : images)
+    if (is(image)) ids.push_back(image.id);
+  return ids;
+}
+
+}  // namespace ds

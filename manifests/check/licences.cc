@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Models, materials and environments without a licence, or with one that not every use may have.
+#include "manifests/check/check.h"
+#include "tracer/base/error.h"
+
+#include <algorithm>
+#include <set>
+
+namespace ds {
+namespace {
+
+void check_licences(const CheckInput& input, CheckReport& report) {
+  std::set<std::string> licensed;
+  std::vector<std::string> unnamed, limited;
+  for (const LicenceRecord& licence : input.dataset.licences) {
+    licensed.insert(licence.assets.begin(), licence.assets.end());
+    if (licence.spdx.empty())
+      unnamed.insert(unnamed.end(), licence.assets.begin(), licence.assets.end());
+    for (const char* part : {"-NC", "-ND", "-SA", "GPL"})
+      if (licence.spdx.find(part) != licence.spdx.npos) {
+        limited.push_back(licence.spdx);
+        break;
+      }
+  }
+  if (input.dataset.licence.empty())
+    report.say(CheckLevel::warning, "the dataset names no licence",
+               "dataset.licence = \"CC-BY-4.0\"");
+  if (licensed.empty())
+    report.say(CheckLevel::warning, "no licence stands beside any model or scene",
+               "a LICENSE file in their folders");
+  report.add(CheckLevel::note, "models and scenes have a licence that is no text of SPDX", unnamed,
+             licensed.size());
+  report.add(CheckLevel::note, "licences allow not every use, or want the same of what is made",
+             limited, input.dataset.licences.size());
+}
+
+}  // namespace
+
+Check licences_check() {
+  return {"licences", "assets without a licence, or with one that limits use", check_licences};
+}
+
+}  // namespace ds

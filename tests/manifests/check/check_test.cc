@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// Each fault is planted in a dataset that has none.
+#include "manifests/check/check.h"
+
+#include "tracer/base/error.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+namespace ds {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// 4 classes of 6 models, half for training, 2 views each; materials and environments go round.
+CheckInput clean() {
+  CheckInput input;
+  input.dataset.licence = "CC0-1.0";
+  input.dataset.licences = {{"CC0-1.0", "text", {"models"}}};
+  std::uint64_t number = 0;
+  for (const char* name : {"car", "chair", "mug", "ship"})
+    for (int model = 0; model < 6; ++model)
+      for (int view = 0; view < 2; ++view) {
+        ImageRecord image;
+        image.model = fmt::format("{}{}.ply", name, model);
+        image.id = fmt::format("{}/{}", image.model, view);
+        image.class_path = name;
+        image.split = model < 3 ? "train" : "test";
+        image.material = fmt::format("m{}", model % 3);
+        image.environment = fmt::format("e{}", model % 2);
+        image.view = std::to_string(view);
+        image.width = image.height = 10;
+        image.files.push_back({image.id + ".png", "image", {}, Hash128{1, ++number}});
+        image.pixel_counts = {100, 0, 40, 0, 40};
+        image.relative_error = 0.02;
+        image.parts[0] = hash_text(image.model);
+        input.images.push_back(std::move(image));
+      }
+  return input;
+}
+
+ImageRecord& image_of(CheckInput& input, const std::string& id) {
+  return *std::find_if(input.images.begin(), input.images.end(),
+                       [&](const ImageRecord& image) { return image.id == id; });
+}
+
+/// "error: 1 of 48 ...: examples" of what is above a note.
+std::vector<std::string> found(const CheckInput& input, const std::string& check) {
+  std::vector<std::string> lines;
+  for (const CheckFinding& finding : run_checks(input, {check}))
+    if (finding.level != CheckLevel::note)
+      lines.push_back(fmt::format("{}: {}/{} {}: {}", name_of(finding.level), finding.count,
+                                  finding.of, finding.what, fmt::join(finding.examples, ",")));
+  return lines;
+}
+
+TEST(Checks, ACleanDatasetHasNothingAboveANote) {
+  for (const CheckFinding& finding : run_checks(clean(), {}))
+    EXPECT_EQ(finding.level, CheckLevel::note) << finding.check << ": " << finding.what;
+  EXPECT_THROW(run_checks(clean(), {"leak"}), Error);
+}
+
+TEST(Checks, ADatasetOfNothing) {
+  EXPECT_THAT(found(CheckInput{}, "balance"), ElementsAre(HasSubstr("the dataset has no images")));
+  run_checks(CheckInput{}, {});
+}
+
+TEST(Checks, OneMeshInTwoSplits) {
+  CheckInput input = clean();
+  for (const char* view : {"0", "1"})
+    image_of(input, std::string("mug5.ply/") + view).parts[0] = hash_text("mug0.ply");
+  EXPECT_THAT(found(input, "leaks"),
+              ElementsAre("error: 1/23 models are the same mesh in two splits: mug5.ply (test), "
+                          "mug0.ply (train)"));
+  // Within one split it is no leak.
+  for (ImageRecord& image : input.images)
+    if (image.model == "mug5.ply") image.split = "train";
+  EXPECT_THAT(found(input, "leaks"), IsEmpty());
+}
+
+TEST(Checks, PicturesOfEqualPixels) {
+  CheckInput input = clean();
+  image_of(input, "mug1.ply/1").files[0].pixels = image_of(input, "mug1.ply/0").files[0].pixels;
+  EXPECT_THAT(
+      found(input, "duplicates"),
+      ElementsAre("warning: 1/48 pictures have the pixels of another: mug1.ply/1 as mug1.ply/0"));
+  image_of(input, "car5.ply/1").files[0].pixels = image_of(input, "car0.ply/0").files[0].pixels;
+  EXPECT_THAT(found(input, "duplicates"), Contains(HasSubstr("error: 1/48")));
+}
+
+TEST(Checks, MaterialsThatTellTheClass) {
+  CheckInput input = clean();
+  for (ImageRecord& image : input.images)
+    image.material = image.class_path;
+  const auto lines = found(input, "shortcuts");
+  ASSERT_EQ(lines.size(), 1u);
+  // Four classes of equal size, told for sure: two bits.
+  EXPECT_THAT(lines[0], HasSubstr("the material tells 2.00 bits of the class"));
+  // Dealt out model by model: 24 models of 24 materials say nothing, though each is of one class.
+  for (ImageRecord& image : input.images)
+    image.material = image.model;
+  EXPECT_THAT(found(input, "shortcuts"), IsEmpty());
+}
+
+TEST(Checks, ClassesOfOneSplitOrOneModelOrFarLarger) {
+  CheckInput input = clean();
+  for (ImageRecord& image : input.images)
+    if (image.class_path == "ship") image.split = "train";
+  EXPECT_THAT(found(input, "balance"),
+              ElementsAre("error: 1/4 classes have images in one split only: ship (train)"));
+  input = clean();
+  std::erase_if(input.images, [](const ImageRecord& image) {
+    return image.class_path == "ship" && image.model != "ship0.ply";
+  });
+  EXPECT_THAT(found(input, "balance"),
+              Contains(HasSubstr("warning: 1/4 classes have a single model")));
+  for (int i = 0; i < 101; ++i) {
+    input.images.push_back(image_of(input, "car0.ply/0"));
+    input.images.back().id += std::to_string(i);
+  }
+  EXPECT_THAT(found(input, "balance"), Contains(HasSubstr("ship has 2 images and car has 113")));
+}
+
+TEST(Checks, MasksAndPicturesOfNoUse) {
+  CheckInput input = clean();
+  image_of(input, "car0.ply/0").pixel_counts.model = 0;
+  image_of(input, "car0.ply/1").pixel_counts.model = 95;
+  EXPECT_THAT(found(input, "masks"),
+              ElementsAre("error: 1/48 images show nothing of their model: car0.ply/0",
+                          "warning: 1/48 images show nearly nothing but their model, on over 90 %: "
+                          "car0.ply/1"));
+  image_of(input, "car0.ply/0").pixel_counts.lit = 0;
+  image_of(input, "car0.ply/1").pixel_counts.white = 26;
+  EXPECT_THAT(found(input, "exposure"),
+              ElementsAre(HasSubstr("error: 1/48 pictures are black"),
+                          HasSubstr("warning: 1/48 pictures are clipped")));
+}
+
+TEST(Checks, NoiseAndLostSamples) {
+  CheckInput input = clean();
+  image_of(input, "car0.ply/0").relative_error = 0.061;
+  image_of(input, "car0.ply/1").rejected_samples = 1;
+  image_of(input, "car1.ply/0").film.capped = true;
+  EXPECT_THAT(
+      found(input, "errors"),
+      ElementsAre(HasSubstr("warning: 1/48 pictures are more than 3 times as noisy as the median "
+                            "(0.02): car0.ply/0"),
+                  HasSubstr("did not reach the error that was wanted: car1.ply/0"),
+                  HasSubstr("lost samples that were NaN, infinite or negative: car0.ply/1")));
+}
+
+TEST(Checks, MissingLicences) {
+  CheckInput input = clean();
+  input.dataset.licence.clear();
+  input.dataset.licences.clear();
+  EXPECT_EQ(found(input, "licences").size(), 2u);
+}
+
+}  // namespace
+}  // namespace ds
