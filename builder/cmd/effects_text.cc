@@ -10,12 +10,22 @@
 
 namespace ds {
 
+namespace {
+
+bool traces_paths(const OutputSettings& outputs) {
+  return outputs.image ||
+         std::any_of(outputs.planes.begin(), outputs.planes.end(),
+                     [](const PlaneOutput& plane) { return is_of_light(*plane.type); });
+}
+
+}  // namespace
+
 std::vector<Effect> image_effects(const Recipe& recipe, Inputs& inputs, const ImageSpec& image) {
   std::vector<Effect> effects = effects_of(scene_without_model(inputs, image), image.camera);
   for (Effect& effect : effects)
-    if (!recipe.outputs.image && effect.name != "camera-invisible objects") {
+    if (!traces_paths(recipe.outputs) && effect.name != "camera-invisible objects") {
       effect.simulated = false;
-      effect.why = "no path is traced without outputs.image";
+      effect.why = "no path is traced without outputs.image or a plane of light";
     }
   const auto output = [&](std::string_view name, bool wanted) {
     const bool by_key = name == "image" || name == "mask" || name == "depth";

@@ -17,7 +17,7 @@ Stamps stamps_of(const Arguments& arguments) {
 
 const char* step_of(const PlannedImage& image) {
   if (!image.stale()) return "";
-  if (image.trace_film || image.trace_planes) return "trace";
+  if (image.traces_paths() || image.trace_planes) return "trace";
   const auto to_make = [](const PlannedFile& file) { return file.state == FileState::to_make; };
   return std::any_of(image.files.begin(), image.files.end(), to_make) ? "develop" : "place";
 }
@@ -35,7 +35,7 @@ PlanCounts count(const Plan& plan) {
     counts.trace += step == "trace" ? 1U : 0U;
     counts.develop += step == "develop" ? 1U : 0U;
     counts.place += step == "place" ? 1U : 0U;
-    counts.samples += image.trace_film ? image.samples() : 0;
+    counts.samples += image.traces_paths() ? image.samples() : 0;
   }
   return counts;
 }

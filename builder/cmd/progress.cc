@@ -79,7 +79,7 @@ void Progress::progress(const PlannedImage& image, const TraceProgress& progress
 
 void Progress::image_done(const PlannedImage& image, const ImageWork& work) {
   ++images_done_;
-  samples_done_ += image.trace_film ? image.samples() : 0;
+  samples_done_ += image.traces_paths() ? image.samples() : 0;
   samples_traced_ += work.samples;
   if (moves_)
     show(image.spec.id, 0);
@@ -91,7 +91,7 @@ void Progress::image_failed(const PlannedImage& image, const std::string& why) {
   // One that could not even be planned is told at the end, with the others its file fails.
   if (image.error) return;
   ++images_done_;
-  samples_done_ += image.trace_film ? image.samples() : 0;
+  samples_done_ += image.traces_paths() ? image.samples() : 0;
   if (!tell_failures_) return;
   say(Stream::people, "dsbuild: error: {}: {}\n", image.spec.id, why);
 }

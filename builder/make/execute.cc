@@ -39,10 +39,10 @@ std::vector<const ImageSpec*> one_of_each_kind(const std::deque<const PlannedIma
   std::vector<const ImageSpec*> first;
   for (const PlannedImage* image : queue) {
     const ImageSpec& spec = image->spec;
-    if (image->trace_film && kinds
-                                 .emplace(spec.material_file, spec.environment_folder,
-                                          spec.camera.lens_radius_m > 0, spec.engine.math)
-                                 .second)
+    if (image->traces_paths() && kinds
+                                     .emplace(spec.material_file, spec.environment_folder,
+                                              spec.camera.lens_radius_m > 0, spec.engine.math)
+                                     .second)
       first.push_back(&spec);
   }
   return first;
@@ -217,7 +217,7 @@ void Execution::take_kept() {
 void Execution::make_all(Queue queue) {
   std::uint64_t samples = 0;
   for (const PlannedImage* image : queue)
-    samples += image->trace_film ? image->samples() : 0;
+    samples += image->traces_paths() ? image->samples() : 0;
   observer_.started(queue.size(), samples);
   maker_.announce(one_of_each_kind(queue));
   std::size_t put_back = 0;  // images in a row that others are making

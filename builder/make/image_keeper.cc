@@ -43,8 +43,9 @@ Product product_of(Hash128 key, const std::string& kind) {
 std::size_t bytes_held(const TracedImage& image) {
   std::size_t floats = image.sums.planes.size();
   if (image.film) floats += image.film->rgb.size() + image.film->halves.size();
-  for (const Plane& plane : image.planes)
-    floats += plane.values.size();
+  for (const auto* planes : {&image.planes, &image.light_planes})
+    for (const Plane& plane : *planes)
+      floats += plane.values.size();
   return floats * sizeof(float);
 }
 
@@ -142,7 +143,7 @@ void ImageKeeper::keep_batch(std::deque<TracedImage> batch) {
   for (TracedImage& traced : batch) {
     ready.push_back(made_ready(traced, ready));
     traced.film.reset();
-    traced.planes = {};
+    traced.planes = traced.light_planes = {};
     traced.sums = {};
   }
   std::vector<Ready*> images;
@@ -284,6 +285,10 @@ Product ImageKeeper::developed(Ready& ready, const OutputFile& output,
 Product ImageKeeper::plane_file(Ready& ready, const OutputFile& output,
                                 const TracedImage& traced) const {
   Product product = product_of(output.key, output.kind);
+  if (is_of_light(*output.plane))
+    return keep_bytes(ready, std::move(product),
+                      encode_output(dataset_.recipe.outputs, output, traced.light_planes),
+                      traced.light_run);
   product.pixel_counts = count_planes(traced.planes);
   return keep_bytes(ready, std::move(product),
                     encode_output(dataset_.recipe.outputs, output, traced.planes),

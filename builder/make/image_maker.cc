@@ -7,6 +7,7 @@
 #include "tracer/render/develop.h"
 #include "tracer/render/film_file.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -91,7 +92,38 @@ void ImageMaker::trace_film(Work& work) {
     traced.sums = std::move(sums);
 }
 
+/// The planes of light, and the film where none is had yet and it has the same bits.
+void ImageMaker::trace_light(Work& work) {
+  TracedImage& traced = work.traced;
+  if (!traced.light_planes.empty()) return;
+  const Stopwatch watch;
+  FilmSums sums;
+  LitPlanes lit =
+      renderer().trace_light(work.image.spec, wanted_light_planes(dataset_.recipe.outputs), &sums,
+                             work.progress, work.stop);
+  traced.light_planes = std::move(lit.planes);
+  traced.light_run = {watch.seconds(), renderer().device()};
+  traced.work.traced = true;
+  traced.work.samples += lit.film.traced_samples;
+  if (traced.film || work.image.spec.engine.math != MathMode::strict) return;
+  traced.film = std::move(lit.film);
+  traced.new_film = true;
+  traced.film_run = traced.light_run;
+  if (dataset_.recipe.keep_sums) traced.sums = std::move(sums);
+}
+
+/// Whether a plane of light is to be traced.
+bool ImageMaker::lacks_light(const Work& work) {
+  return std::any_of(work.image.files.begin(), work.image.files.end(),
+                     [&](const PlannedFile& file) {
+                       return file.state == FileState::to_make && file.output.plane != nullptr &&
+                              is_of_light(*file.output.plane);
+                     });
+}
+
 void ImageMaker::obtain_film(Work& work) {
+  if (lacks_light(work)) trace_light(work);
+  if (work.traced.film) return;
   const Hash128 key = work.image.keys.render;
   keeper_.wait_for(key);
   const std::optional<Product> known =
@@ -117,6 +149,8 @@ void ImageMaker::obtain(Work& work, const OutputFile& output) {
     obtain_film(work);
     traced.tone_map =
         tone_map_of(dataset_.recipe, inputs_.environment(work.image.spec.environment_folder));
+  } else if (is_of_light(*output.plane)) {
+    trace_light(work);
   } else if (traced.planes.empty()) {
     const Stopwatch watch;
     traced.planes = renderer().trace_planes(work.image.spec, planes_of(dataset_.recipe.outputs));

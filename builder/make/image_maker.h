@@ -52,6 +52,8 @@ class ImageMaker {
   void obtain(Work& work, const OutputFile& output);
   void obtain_film(Work& work);
   void trace_film(Work& work);
+  void trace_light(Work& work);
+  bool lacks_light(const Work& work);
   FilmSums kept_film(const Work& work);
   Renderer& renderer();
 

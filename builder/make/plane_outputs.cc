@@ -30,7 +30,14 @@ std::vector<const PlaneType*> planes_of(const OutputSettings& outputs) {
   if (all.find_plane("mask") == nullptr) all.set_plane({&mask, encodings_of(mask).front()});
   std::vector<const PlaneType*> types;
   for (const PlaneOutput& plane : all.planes)
-    types.push_back(plane.type);
+    if (!is_of_light(*plane.type)) types.push_back(plane.type);
+  return types;
+}
+
+std::vector<const PlaneType*> wanted_light_planes(const OutputSettings& outputs) {
+  std::vector<const PlaneType*> types;
+  for (const PlaneOutput& plane : outputs.planes)
+    if (is_of_light(*plane.type)) types.push_back(plane.type);
   return types;
 }
 

@@ -11,9 +11,12 @@
 
 namespace ds {
 
-/// What is traced where any plane is to be made: all that are wanted, so that a dataset has one
-/// program for them, and the mask, whose counts tell whether an image shows its model.
+/// What is traced where any plane that asks no light is to be made: all of these that are wanted, so
+/// that a dataset has one program for them, and the mask, whose counts tell whether an image shows its
+/// model.
 std::vector<const PlaneType*> planes_of(const OutputSettings& outputs);
+/// And where any plane of light is: all of these.
+std::vector<const PlaneType*> wanted_light_planes(const OutputSettings& outputs);
 /// Of what planes_of traced.
 PixelCounts count_planes(const std::vector<Plane>& planes);
 /// The file of one of them.

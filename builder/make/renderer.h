@@ -24,6 +24,11 @@ class Renderer {
   virtual Film trace(const ImageSpec& image, FilmSums* kept,
                      const std::function<void(const TraceProgress&)>& progress,
                      const std::atomic<bool>& stop) = 0;
+  /// As Tracer::trace_light.
+  virtual LitPlanes trace_light(const ImageSpec& image, const std::vector<const PlaneType*>& types,
+                                FilmSums* reached,
+                                const std::function<void(const TraceProgress&)>& progress,
+                                const std::atomic<bool>& stop) = 0;
   /// As Tracer::trace_planes.
   virtual std::vector<Plane> trace_planes(const ImageSpec& image,
                                           const std::vector<const PlaneType*>& types) = 0;

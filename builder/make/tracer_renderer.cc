@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "builder/make/plane_outputs.h"
 #include "builder/make/renderer.h"
 #include "builder/plan/keys.h"
 #include "tracer/base/error.h"
@@ -24,6 +25,15 @@ class TracerRenderer : public Renderer {
     tracer_.prepare(image.camera, image.engine);
     prepare_next();
     return tracer_.trace(image.camera, image.engine, progress, &stop, kept);
+  }
+  LitPlanes trace_light(const ImageSpec& image, const std::vector<const PlaneType*>& types,
+                        FilmSums* reached,
+                        const std::function<void(const TraceProgress&)>& progress,
+                        const std::atomic<bool>& stop) override {
+    load(image);
+    tracer_.prepare(image.camera, image.engine, types);
+    prepare_next();
+    return tracer_.trace_light(image.camera, image.engine, types, progress, &stop, reached);
   }
   std::vector<Plane> trace_planes(const ImageSpec& image,
                                   const std::vector<const PlaneType*>& types) override {
@@ -56,7 +66,8 @@ class TracerRenderer : public Renderer {
       const ImageSpec& next = *upcoming_.front();
       upcoming_.pop_front();
       try {
-        if (tracer_.prepare_ahead(scene_without_model(inputs_, next), next.camera, next.engine))
+        if (tracer_.prepare_ahead(scene_without_model(inputs_, next), next.camera, next.engine,
+                                  wanted_light_planes(recipe_.outputs)))
           return;
       } catch (const Error&) {  // a file that cannot be read fails its own images
       }

@@ -157,6 +157,12 @@ class Rerender {
       : recipe_(recipe), inputs_(inputs), renderer_(renderer), image_(image), stop_(stop) {}
 
   std::vector<std::byte> encode(const OutputFile& output) {
+    if (output.plane != nullptr && is_of_light(*output.plane)) {
+      if (light_.planes.empty())
+        light_ = renderer_.trace_light(image_.spec, wanted_light_planes(recipe_.outputs), nullptr,
+                                       {}, stop_);
+      return encode_output(recipe_.outputs, output, light_.planes);
+    }
     if (output.plane == nullptr) {
       const Film film = renderer_.trace(image_.spec, nullptr, {}, stop_);
       return encode_png(
@@ -173,6 +179,7 @@ class Rerender {
   const PlannedImage& image_;
   const std::atomic<bool>& stop_;
   std::vector<Plane> planes_;
+  LitPlanes light_;
 };
 
 void compare_rerendered(VerifyResult& result, Rerender& rerender, const PlannedImage& image,

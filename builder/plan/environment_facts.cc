@@ -4,6 +4,7 @@
 #include "tracer/base/canonical.h"
 #include "tracer/base/error.h"
 #include "tracer/kernels/layout.h"
+#include "tracer/scene/scene_reads.h"
 #include "tracer/scene/sdl.h"
 
 #include <fmt/format.h>
@@ -17,20 +18,25 @@ namespace {
 using nlohmann::json;
 
 std::string canonical_shape(const Scene& environment, unsigned reads) {
-  MeshExtras extras;
-  extras.uvs = (reads & kernels::k_plane_uvs) != 0;
-  extras.normals = (reads & kernels::k_plane_normals) != 0;
+  const bool materials = (reads & kernels::k_plane_materials) != 0;
   CanonicalText text;
   for (std::size_t i = 0; i < environment.objects.size(); ++i) {
     const Object& object = environment.objects[i];
+    MeshExtras extras;
+    if (materials) extras = reads_of(environment, object.material);
+    extras.uvs = extras.uvs || (reads & kernels::k_plane_uvs) != 0;
+    extras.normals = (reads & kernels::k_plane_normals) != 0;
     text.add("object.geometry", geometry_hash(object.mesh, extras).hex());
     text.add("object.camera_invisible", object.camera_invisible);
     if ((reads & kernels::k_plane_objects) != 0) text.add(fmt::format("object{}.id", i), object.id);
     if ((reads & kernels::k_plane_material_ids) != 0)
       text.add(fmt::format("object{}.material.id", i),
                environment.materials[static_cast<std::size_t>(object.material)].id);
+    if (materials)
+      text.add(fmt::format("object{}.material", i),
+               environment.materials[static_cast<std::size_t>(object.material)].name);
   }
-  return text.text();
+  return text.text() + (materials ? canonical_colours(environment) : "");
 }
 
 std::map<unsigned, std::string> canonical_shapes(const Scene& environment) {
@@ -90,8 +96,19 @@ std::uint32_t largest_material_id(const Scene& scene) {
 }
 
 unsigned plane_reads(const PlaneType& plane) {
-  return plane.traits & (kernels::k_plane_normals | kernels::k_plane_uvs |
-                         kernels::k_plane_objects | kernels::k_plane_material_ids);
+  return plane.traits &
+         (kernels::k_plane_normals | kernels::k_plane_uvs | kernels::k_plane_objects |
+          kernels::k_plane_material_ids | kernels::k_plane_materials);
+}
+
+std::string canonical_colours(const Scene& scene) {
+  Scene dark;
+  dark.textures = scene.textures;
+  dark.images = scene.images;
+  dark.materials = scene.materials;
+  for (Material& material : dark.materials)
+    material.emits = false;
+  return canonical_material(dark);
 }
 
 EnvironmentFacts facts_of(const Scene& environment) {

@@ -27,11 +27,14 @@ struct EnvironmentFacts {
 };
 
 /// What of an object a plane reads beside its places: its traits of kernels/plane_traits.h that say
-/// so.
+/// so. With k_plane_materials, of meshes also what materials' textures read, whatever that is.
 unsigned plane_reads(const PlaneType& plane);
 
 /// 0 where no material has one.
 std::uint32_t largest_material_id(const Scene& scene);
+
+/// Canonical text of materials and textures, whatever shines of them.
+std::string canonical_colours(const Scene& scene);
 
 EnvironmentFacts facts_of(const Scene& environment);
 

@@ -2,6 +2,7 @@
 #include "builder/plan/keys.h"
 
 #include "builder/plan/output_kinds.h"
+#include "builder/plan/plane_keys.h"
 #include "builder/plan/text_form.h"
 #include "tracer/base/canonical.h"
 #include "tracer/base/hex_text.h"
@@ -28,9 +29,6 @@
 namespace ds {
 namespace {
 
-/// Version of how planes are traced.
-constexpr int k_geometry_version = 1;
-
 std::string_view view_of_digits(const fmt::format_int& number) {
   return {number.data(), number.size()};
 }
@@ -41,11 +39,6 @@ const char* name_of(Centring centre) {
 
 const char* name_of(Normals normals) {
   return normals == Normals::smooth ? "smooth" : normals == Normals::keep ? "keep" : "flat";
-}
-
-void add_vector(CanonicalText& text, std::string_view name, Vec3d v) {
-  const double values[] = {v.x, v.y, v.z};
-  text.add(name, std::span<const double>(values));
 }
 
 /// Stands for the model where only the kinds of effects in a scene matter.
@@ -89,16 +82,6 @@ std::string canonical_model(const MeshHashes& mesh, MeshExtras reads,
 }
 
 namespace {
-
-/// What the key of an output is the hash of, less what it is made from.
-TextForm output_form(std::string_view kind, std::string_view format,
-                     const std::string& development) {
-  CanonicalText text;
-  text.add("kind", kind);
-  text.add("from", "");
-  text.add("format", format);
-  return {text.text() + development, {"from"}};
-}
 
 /// The five parts of the render key behind what `head` holds.
 TextForm form_of_parts(CanonicalText head) {
@@ -144,17 +127,7 @@ struct View {
   Camera camera;
   int width = 0, height = 0;
   Hash128 part;
-  std::vector<TextForm> planes;  ///< of each wanted: its text, k_plane_parts to be filled
-};
-
-constexpr std::array<const char*, 2> k_plane_parts = {"model", "material_id"};
-
-/// What all images share of a plane.
-struct WantedPlane {
-  const PlaneType* type = nullptr;
-  Hash128 program;  ///< of its tokens, with this plane alone
-  MeshExtras reads;
-  TextForm output;
+  std::vector<TextForm> planes;  ///< of each wanted: its text, plane_form
 };
 
 /// What images in one environment share.
@@ -174,13 +147,22 @@ struct Kind {
   Hash128 material_part;
   std::uint32_t material_id = 0;
   Hash128 files_part;
-  MeshExtras reads;  ///< of a model, by the material
-  Hash128 program;   ///< of its tokens, as they stand in a canonical text
+  MeshExtras reads;                     ///< of a model, by the material
+  Hash128 colours;                      ///< of canonical_colours
+  std::vector<Hash128> plane_programs;  ///< of each wanted; none where that is the plane's alone
+  std::vector<TextForm> plane_engines;  ///< of each wanted plane of light: as `engine`
+  Hash128 program;                      ///< of its tokens, as they stand in a canonical text
   bool made = false;
   EngineSettings settings;  ///< with seed 0
   TextForm engine;          ///< folded, "seed" to be filled
   std::optional<TextForm> kept;
 };
+
+/// All that the kinds of effects in an image depend on.
+std::string kind_name(const ImageSpec& image, const Environment& environment, Hash128 material) {
+  return fmt::format("{} {} {}", material.hex(), environment.part.hex(),
+                     image.camera.lens_radius_m > 0 ? "lens" : "pinhole");
+}
 
 }  // namespace
 
@@ -199,9 +181,9 @@ class KeyMaker::State {
   Kind& kind_of(const ImageSpec& image, const Environment& environment);
   const std::string& program(const ImageSpec& image);
   Hash128 program_hash(const ImageSpec& image, const Environment& environment, Hash128 material);
-  TextForm plane_form(const WantedPlane& plane, const Environment& environment,
-                      const ImageSpec& image) const;
-  void add_outputs(ImageKeys& keys, Environment& environment, View& view, const Kind& kind,
+  Hash128 traced_plane(std::size_t number, const PartHashes& parts, View& view, Kind& kind,
+                       const ImageSpec& image);
+  void add_outputs(ImageKeys& keys, Environment& environment, View& view, Kind& kind,
                    const ImageSpec& image);
 
   const Recipe& recipe_;
@@ -232,12 +214,7 @@ KeyMaker::State::State(const Recipe& recipe, Inputs& inputs, TextSet& texts)
     files.add(kind.kind, "");
     names.push_back(kind.kind.data());  // names are literals
     if (kind.plane == nullptr) continue;
-    const std::vector<const PlaneType*> alone{kind.plane};
-    MeshExtras reads;
-    reads.uvs = (kind.plane->traits & kernels::k_plane_uvs) != 0;
-    reads.normals = (kind.plane->traits & kernels::k_plane_normals) != 0;
-    planes_.push_back({kind.plane, hash_text(program_tokens(planes_program_text(alone))), reads,
-                       output_form(kind.kind, kind.format, "")});
+    planes_.push_back(wanted_plane(kind));
   }
   files_ = TextForm(files.text(), names);
 }
@@ -281,28 +258,32 @@ View& KeyMaker::State::view_of(Environment& environment, const ImageSpec& image)
   view.part = hash_text(texts_.fold(canonical_camera(image.camera)));
   view.planes.clear();
   for (const WantedPlane& plane : planes_)
-    view.planes.push_back(plane_form(plane, environment, image));
+    view.planes.push_back(is_of_light(*plane.type) ? TextForm()
+                                                   : plane_form(plane, environment.shapes, image));
   return view;
 }
 
-/// Of a plane of the model alone the environment is no part.
-TextForm KeyMaker::State::plane_form(const WantedPlane& plane, const Environment& environment,
-                                     const ImageSpec& image) const {
-  const bool alone = (plane.type->traits & kernels::k_plane_alone) != 0;
-  CanonicalText text;
-  text.add("version", k_geometry_version);
-  text.add("host_version", k_host_render_version);
-  text.add("program", plane.program.hex());
-  for (const char* part : k_plane_parts)
-    text.add(part, "");
-  text.add("environment", alone ? "" : environment.shapes.at(plane_reads(*plane.type)));
-  add_vector(text, "camera.position", image.camera.position);
-  add_vector(text, "camera.target", image.camera.target);
-  add_vector(text, "camera.up", image.camera.up);
-  text.add("camera.fov_deg", image.camera.fov_deg);
-  text.add("width", image.engine.width);
-  text.add("height", image.engine.height);
-  return {text.text(), k_plane_parts};
+/// Of what a plane is made from, for an image; `parts`: of its picture.
+Hash128 KeyMaker::State::traced_plane(std::size_t number, const PartHashes& parts, View& view,
+                                      Kind& kind, const ImageSpec& image) {
+  const WantedPlane& plane = planes_[number];
+  if (is_of_light(*plane.type)) {
+    const Hash128 engine =
+        kind.plane_engines[number].hash({view_of_digits(fmt::format_int(image.engine.seed))});
+    return five_.hash({HexText(parts[0]).text(), HexText(parts[1]).text(), HexText(parts[2]).text(),
+                       HexText(parts[3]).text(), HexText(engine).text()});
+  }
+  TextForm& form = view.planes[number];
+  if (reads_materials(*plane.type)) {
+    MeshExtras reads = kind.reads;
+    reads.normals = plane.reads.normals;
+    return form.hash({HexText(kind.plane_programs[number]).text(),
+                      HexText(model_part(image, reads)).text(), HexText(kind.colours).text()});
+  }
+  const bool has_id = (plane.type->traits & kernels::k_plane_material_ids) != 0;
+  const fmt::format_int material_id(kind.material_id);
+  return form.hash({HexText(model_part(image, plane.reads)).text(),
+                    has_id ? view_of_digits(material_id) : std::string_view()});
 }
 
 /// Of few different ones, however many materials and environments there are.
@@ -318,9 +299,7 @@ const std::string& KeyMaker::State::program(const ImageSpec& image) {
 /// material, the environment and the lens, and on dsbuild itself.
 Hash128 KeyMaker::State::program_hash(const ImageSpec& image, const Environment& environment,
                                       Hash128 material) {
-  const std::string question =
-      fmt::format("program {} {} {}", material.hex(), environment.part.hex(),
-                  image.camera.lens_radius_m > 0 ? "lens" : "pinhole");
+  const std::string question = "program " + kind_name(image, environment, material);
   if (const auto known = inputs_.find_known(question))
     if (const auto hash = Hash128::from_hex(*known)) return *hash;
   CanonicalText text;
@@ -354,15 +333,28 @@ Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& enviro
   kind.engine =
       TextForm(canonical_engine(settings, TextSet::k_reference + kind.program.hex()), {"seed"});
   kind.kept.reset();
+  kind.colours = hash_text(canonical_colours(material));
+  kind.plane_programs.clear();
+  kind.plane_engines.clear();
+  const std::string of = kind_name(image, environment, kind.material_part);
+  for (const WantedPlane& plane : planes_) {
+    const bool light = is_of_light(*plane.type);
+    Hash128 program;
+    if (light || reads_materials(*plane.type))
+      program = plane_program(*plane.type, of, inputs_, image);
+    kind.plane_programs.push_back(program);
+    TextForm engine;
+    if (light) engine = TextForm(canonical_engine(settings, program.hex()), {"seed"});
+    kind.plane_engines.push_back(std::move(engine));
+  }
   kind.settings = settings;
   kind.made = true;
   return kind;
 }
 
-void KeyMaker::State::add_outputs(ImageKeys& keys, Environment& environment, View& view,
-                                  const Kind& kind, const ImageSpec& image) {
+void KeyMaker::State::add_outputs(ImageKeys& keys, Environment& environment, View& view, Kind& kind,
+                                  const ImageSpec& image) {
   keys.outputs.reserve(output_kinds_.size());
-  const fmt::format_int material_id(kind.material_id);
   std::vector<HexText> texts;
   texts.reserve(output_kinds_.size());
   std::vector<std::string_view> values;
@@ -372,12 +364,8 @@ void KeyMaker::State::add_outputs(ImageKeys& keys, Environment& environment, Vie
     if (output.plane == nullptr) {
       key = environment.picture.hash({HexText(keys.render).text()});
     } else {
-      WantedPlane& plane = planes_[next];
-      const bool has_id = (plane.type->traits & kernels::k_plane_material_ids) != 0;
-      const Hash128 traced =
-          view.planes[next++].hash({HexText(model_part(image, plane.reads)).text(),
-                                    has_id ? view_of_digits(material_id) : std::string_view()});
-      key = plane.output.hash({HexText(traced).text()});
+      const Hash128 traced = traced_plane(next, keys.parts, view, kind, image);
+      key = planes_[next++].output.hash({HexText(traced).text()});
     }
     texts.emplace_back(key);
     keys.outputs.push_back(

@@ -120,7 +120,7 @@ void Planner::plan_files(PlannedImage& image, bool changed) {
     }
     if (file.state == FileState::to_make) {
       if (output.plane != nullptr)
-        image.trace_planes = true;
+        (is_of_light(*output.plane) ? image.trace_light : image.trace_planes) = true;
       else if (force_ || !in_store(image.keys.render))
         image.trace_film = true;
     }
@@ -130,7 +130,7 @@ void Planner::plan_files(PlannedImage& image, bool changed) {
   if (!dataset_.recipe.keep_sums || std::all_of(image.files.begin(), image.files.end(), in_place))
     return;
   image.keys.kept = keys_.kept_key(image.spec, image.keys);
-  if (image.trace_film) find_kept(image);
+  if (image.trace_film && !image.trace_light) find_kept(image);
 }
 
 /// A picture that was traced and refused is not traced again: it fails as it did.

@@ -42,6 +42,7 @@ struct PlannedImage {
   bool elsewhere = false;          ///< of another shard: nothing below is filled but `error`
   std::vector<PlannedFile> files;  ///< as keys.outputs; none where it is up to date
   bool trace_film = false, trace_planes = false;
+  bool trace_light = false;  ///< planes of light: all its samples, and those of its film with them
   std::uint64_t kept_samples = 0;    ///< of a kept film that its film goes on from
   bool record = false;               ///< the database is behind though no file is
   std::vector<std::string> reasons;  ///< why it is stale, each a sentence; empty where it is not
@@ -49,6 +50,7 @@ struct PlannedImage {
   bool refused = false;  ///< its picture was made and is not wanted (check_limits); keys hold too
 
   bool stale() const { return !reasons.empty(); }
+  bool traces_paths() const { return trace_film || trace_light; }
   /// Camera samples its film still takes; at most, with an error target.
   std::uint64_t samples() const;
 };

@@ -266,7 +266,7 @@ std::vector<PairWork> work_of(const Plan& plan, const Recipe& recipe) {
         ++pair.files[file.output.kind];
         ++to_make;
       }
-    if (image.trace_film) {
+    if (image.traces_paths()) {
       ++pair.trace;
       if (image.kept_samples > 0) ++pair.kept[kept_spp(image)];
       if (recipe.keep_film) ++pair.files["film"];
@@ -274,7 +274,7 @@ std::vector<PairWork> work_of(const Plan& plan, const Recipe& recipe) {
     } else if (to_make > 0) {
       ++pair.remake;
     }
-    if (image.trace_film || image.trace_planes)
+    if (image.traces_paths() || image.trace_planes)
       scenes[name].insert(
           {image.spec.model_file, image.spec.material_file, image.spec.environment_folder});
   }

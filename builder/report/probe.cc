@@ -30,6 +30,12 @@ class SharedRenderer : public Renderer {
              const std::atomic<bool>& stop) override {
     return renderer_.trace(image, kept, progress, stop);
   }
+  LitPlanes trace_light(const ImageSpec& image, const std::vector<const PlaneType*>& types,
+                        FilmSums* reached,
+                        const std::function<void(const TraceProgress&)>& progress,
+                        const std::atomic<bool>& stop) override {
+    return renderer_.trace_light(image, types, reached, progress, stop);
+  }
   std::vector<Plane> trace_planes(const ImageSpec& image,
                                   const std::vector<const PlaneType*>& types) override {
     return renderer_.trace_planes(image, types);

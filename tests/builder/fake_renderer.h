@@ -51,10 +51,31 @@ class FakeRenderer : public Renderer {
     if (calls_.stop_after_one != nullptr) *calls_.stop_after_one = true;
     return film;
   }
+  LitPlanes trace_light(const ImageSpec& image, const std::vector<const PlaneType*>& types,
+                        FilmSums* /*reached*/,
+                        const std::function<void(const TraceProgress&)>& progress,
+                        const std::atomic<bool>& stop) override {
+    LitPlanes traced{trace(image, nullptr, progress, stop), {}};
+    traced.planes = planes_by_seed(image, types, hash64_text(seed_text(image)));
+    return traced;
+  }
   std::vector<Plane> trace_planes(const ImageSpec& image,
                                   const std::vector<const PlaneType*>& types) override {
     calls_.planes.push_back(image.id);
-    const std::uint64_t seed = hash64_text(read_text_file(image.model_file) + *image.view);
+    return planes_by_seed(image, types,
+                          hash64_text(read_text_file(image.model_file) + *image.view));
+  }
+  void announce(std::vector<const ImageSpec*> images) override {
+    for (const ImageSpec* image : images)
+      calls_.announced.push_back(image->id);
+  }
+  ProgramCounts programs() const override { return {}; }
+  std::string device() const override { return "fake"; }
+
+ private:
+  static std::vector<Plane> planes_by_seed(const ImageSpec& image,
+                                           const std::vector<const PlaneType*>& types,
+                                           std::uint64_t seed) {
     std::vector<Plane> planes;
     for (const PlaneType* type : types) {
       Plane& plane = planes.emplace_back(Plane{type, image.engine.width, image.engine.height, {}});
@@ -67,14 +88,6 @@ class FakeRenderer : public Renderer {
     }
     return planes;
   }
-  void announce(std::vector<const ImageSpec*> images) override {
-    for (const ImageSpec* image : images)
-      calls_.announced.push_back(image->id);
-  }
-  ProgramCounts programs() const override { return {}; }
-  std::string device() const override { return "fake"; }
-
- private:
   static std::string seed_text(const ImageSpec& image) {
     return read_text_file(image.model_file) + read_text_file(image.material_file) +
            read_text_file(*image.environment_folder / "environment.scn") + *image.view +

@@ -8,6 +8,7 @@ from harness import IMAGES, TinyCase, main
 
 FLOATS = ["depth", "distance", "position", "geometry_normal", "shading_normal", "uv"]
 ALL = ["mask", "amodal_mask", "object_id", "material_id", *FLOATS]
+LIGHT = ["emission", "direct_diffuse", "direct_glossy", "indirect_diffuse", "indirect_glossy", "indirect_specular"]
 
 
 def planes(*names):
@@ -104,6 +105,40 @@ class PlanesTest(TinyCase):
                     for a, b in zip(right, found):
                         wanted = 0 if not met else a * most if most == 1000 else (a + 1) / 2 * most
                         self.assertLessEqual(abs(b - wanted), 0.51, kind)
+
+    def test_light_adds_up_to_the_picture(self):
+        linear = ["--set", "outputs.tone_map=linear", "--set", "outputs.tone_map_scale=0.5", "--set", "engine.spp=4"]
+        wanted = [*linear, *planes(*(name.upper() for name in LIGHT))]
+        self.assert_counts(self.build(*wanted), built=IMAGES, traced_samples=IMAGES * 32 * 32 * 4)
+        lit = set()
+        for record in self.records():
+            shares = {kind: self.values(record, kind) for kind in LIGHT}
+            for i, pixel in enumerate(self.values(record, "image")):
+                for channel, sample in enumerate(pixel):
+                    whole = sum(shares[kind][i][channel] for kind in LIGHT)
+                    self.assertLessEqual(abs(min(1, whole * 0.5) ** (1 / 2.2) * 255 - sample), 0.51)
+                    lit.update(kind for kind in LIGHT if shares[kind][i][channel] > 0)
+        self.assertLessEqual({"emission", "direct_diffuse", "indirect_diffuse"}, lit)
+        told = json.loads((self.out / "manifest/dataset.json").read_text())["planes"]
+        self.assertIn("adds up to the picture", " ".join(told["emission"]["convention"].split()))
+        verified = self.run_it("verify", self.recipe, "-o", self.out, "--rerender", 2, *wanted)
+        self.assertEqual(verified.code, 0, verified)
+
+    def test_albedo_is_the_colour_of_the_materials(self):
+        self.build(*planes("albedo", "mask", "object_id"))
+        colours = {"red": (0.7, 0.1, 0.1), "green": (0.1, 0.6, 0.1)}
+        for record in self.records():
+            albedo, mask, ids = (self.values(record, kind) for kind in ("albedo", "mask", "object_id"))
+            model = colours[record["material"]]
+            for colour, on, other in zip(albedo, mask, ids):
+                if on[0]:
+                    right = model
+                elif any(colour):
+                    right = (0.5, 0.5, 0.5)  # the floor
+                else:
+                    right = (0, 0, 0)
+                for a, b in zip(colour, right):
+                    self.assertAlmostEqual(a, b, delta=1e-6)
 
     def test_a_plane_more_moves_no_other_file(self):
         self.build()

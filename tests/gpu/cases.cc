@@ -145,6 +145,8 @@ std::vector<Case> all_cases(const std::filesystem::path& assets) {
   }
   cases.push_back({all_effects().back(), Traces::planes});
   cases.back().picture.name = "all-planes";
+  cases.push_back({all_effects().back(), Traces::light});
+  cases.back().picture.name = "all-light";
   cases.push_back({all_effects().back()});
   cases.back().picture.name = "all-scheduled";
   cases.back().picture.engine.target = ErrorTarget{0.02, 48, cases.back().picture.scene.tone_map};

@@ -10,8 +10,8 @@
 namespace ds::gpu {
 
 /// What a case of a pack traces: a picture with its mask and depth, or, `timed`, a large picture or
-/// these alone; or every plane that asks no light.
-enum class Traces { picture_and_geometry, picture, geometry, planes };
+/// these alone; or every plane that asks no light, or a picture with every plane of light.
+enum class Traces { picture_and_geometry, picture, geometry, planes, light };
 
 struct Case {
   pictures::Picture picture;

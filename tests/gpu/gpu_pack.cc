@@ -70,11 +70,15 @@ void record(Tracer& tracer, const gpu::Case& one) {
   if (one.timed && !geometry_alone)
     gpu::time_case(pixels * static_cast<std::uint64_t>(engine.spp), "samples", "trace_paths");
   tracer.set_scene(picture.scene);
-  if (one.traces == gpu::Traces::planes) {
+  const bool of_light = one.traces == gpu::Traces::light;
+  if (of_light || one.traces == gpu::Traces::planes) {
     std::vector<const PlaneType*> types;
     for (const PlaneType& type : plane_types())
-      types.push_back(&type);
-    tracer.trace_planes(picture.camera, engine.width, engine.height, types);
+      if (is_of_light(type) == of_light) types.push_back(&type);
+    if (of_light)
+      tracer.trace_light(picture.camera, engine, types);
+    else
+      tracer.trace_planes(picture.camera, engine.width, engine.height, types);
     return gpu::end_case();
   }
   if (!geometry_alone) tracer.trace(picture.camera, engine);

@@ -2,7 +2,6 @@
 #include "tracer/device/plane_types.h"
 
 #include "tracer/base/error.h"
-#include "tracer/device/program_text.h"
 #include "tracer/kernels/all_nodes.h"
 #include "tracer/kernels/planes/list.h"
 #include "tracer/scene/sdl.h"
@@ -36,12 +35,30 @@ const PlaneType& plane_type(std::string_view name) {
   return *plane;
 }
 
-std::string planes_program_text(std::span<const PlaneType* const> planes) {
+bool is_of_light(const PlaneType& plane) {
+  return (plane.traits & kernels::k_plane_light) != 0;
+}
+
+Features with_light_planes(Features features, std::span<const PlaneType* const> planes) {
+  for (const PlaneType* plane : planes) {
+    DS_ASSERT(is_of_light(*plane));
+    features.light_planes.emplace_back(plane->name);
+  }
+  return features;
+}
+
+bool reads_materials(const PlaneType& plane) {
+  return (plane.traits & kernels::k_plane_materials) != 0;
+}
+
+std::string planes_program_text(std::span<const PlaneType* const> planes,
+                                const Features& features) {
   unsigned traits = 0;
   int before = 0;
   std::string list = "#define DS_PLANES(X)";
   std::vector<std::string> headers;
   for (const PlaneType* plane : planes) {
+    DS_ASSERT(!is_of_light(*plane));
     list += fmt::format(" X({}, {})", plane->name, before);
     before += plane->width;
     traits |= plane->traits;
@@ -50,6 +67,11 @@ std::string planes_program_text(std::span<const PlaneType* const> planes) {
   list += "\n";
   if ((traits & kernels::k_plane_surface) != 0) list += "#define DS_PLANE_SURFACE\n";
   if ((traits & kernels::k_plane_material_ids) != 0) list += "#define DS_PLANE_MATERIAL_IDS\n";
+  if ((traits & kernels::k_plane_materials) != 0) {
+    list += "#define DS_HOOK_ALBEDO\n" + material_definitions(features);
+    const std::vector<std::string> files = material_files(features);
+    headers.insert(headers.begin(), files.begin(), files.end());
+  }
   headers.emplace_back("tracer/kernels/first_hit.cl");
   return assemble(list, headers);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tracer/device/program_text.h"
+
 #include <span>
 #include <string>
 #include <string_view>
@@ -8,7 +10,7 @@
 
 namespace ds {
 
-/// A plane that asks no light: of tracer/kernels/planes/NAME.h, which says what its numbers are.
+/// A plane of tracer/kernels/planes/NAME.h, which says what its numbers are.
 struct PlaneType {
   std::string_view name;
   int width;        ///< numbers a pixel
@@ -22,7 +24,18 @@ const PlaneType* find_plane(std::string_view name);
 /// One that there is.
 const PlaneType& plane_type(std::string_view name);
 
-/// Source of the program that traces these planes, in this order.
-std::string planes_program_text(std::span<const PlaneType* const> planes);
+/// Whether it is a share of the picture, of its paths and samples; others ask no light and are traced
+/// by one ray a pixel.
+bool is_of_light(const PlaneType& plane);
+/// Whether the plane's numbers come from the materials of what is hit.
+bool reads_materials(const PlaneType& plane);
+
+/// `features` with the program of the picture and these planes of light beside it.
+Features with_light_planes(Features features, std::span<const PlaneType* const> planes);
+
+/// Source of the program that traces these planes, which ask no light, in this order. `features`: of the scene, where
+/// one of them reads materials.
+std::string planes_program_text(std::span<const PlaneType* const> planes,
+                                const Features& features = {});
 
 }  // namespace ds

@@ -21,30 +21,82 @@ std::string_view embedded_text(std::string_view path) {
   fail(ErrorKind::device, "kernel file {} is not part of this program", path);
 }
 
-/// The path of a line `#include "path"`, or nothing.
-std::string_view included_path(std::string_view line) {
-  constexpr std::string_view start = "#include \"";
-  if (!line.starts_with(start)) return {};
-  line.remove_prefix(start.size());
-  return line.substr(0, line.find('"'));
+std::string_view take_line(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == text.npos ? text.size() : end + 1);
+  return line;
 }
 
-void append_with_includes(std::string_view path, std::set<std::string, std::less<>>& done,
-                          std::string& out) {
-  if (!done.emplace(path).second) return;
-  std::string_view text = embedded_text(path);
-  while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == text.npos ? text.size() : end + 1);
-    if (const std::string_view other = included_path(line); !other.empty()) {
-      append_with_includes(other, done, out);
-    } else if (!line.starts_with("#pragma once")) {
-      out += line;
-      out += '\n';
-    }
+/// What stands behind a directive's '#' and its blanks; nothing of other lines.
+std::string_view directive_of(std::string_view line) {
+  if (!line.starts_with('#')) return {};
+  line.remove_prefix(std::min(line.find_first_not_of(' ', 1), line.size()));
+  return line;
+}
+
+/// The path of a line `#include "path"`, or nothing.
+std::string_view included_path(std::string_view line) {
+  constexpr std::string_view k_include = "include \"";
+  std::string_view path = directive_of(line);
+  if (!path.starts_with(k_include)) return {};
+  path.remove_prefix(k_include.size());
+  return path.substr(0, path.find('"'));
+}
+
+/// Takes the rest of an `#if` with its `#endif` off the text.
+void skip_block(std::string_view& text) {
+  for (int depth = 1; depth > 0;) {
+    DS_ASSERT(!text.empty());
+    const std::string_view directive = directive_of(take_line(text));
+    DS_ASSERT(depth > 1 || !directive.starts_with("el"));
+    depth += directive.starts_with("if") ? 1 : directive.starts_with("endif") ? -1 : 0;
   }
 }
+
+/// Puts files together. What stands behind `#ifdef DS_HOOK_...` is in the text only where that is
+/// defined, so that a hook is in no key of a program without it.
+class Assembly {
+ public:
+  explicit Assembly(const std::string& definitions) : text_(definitions) {
+    for (std::string_view rest = definitions; !rest.empty();) {
+      constexpr std::string_view k_define = "#define ";
+      std::string_view line = take_line(rest);
+      if (!line.starts_with(k_define)) continue;
+      line.remove_prefix(k_define.size());
+      if (line.starts_with(k_hook)) hooks_.emplace(line);
+    }
+  }
+  void add(std::string_view path) {
+    if (!done_.emplace(path).second) return;
+    for (std::string_view rest = embedded_text(path); !rest.empty();) {
+      const std::string_view line = take_line(rest);
+      if (const std::string_view other = included_path(line); !other.empty()) {
+        add(other);
+      } else if (is_missing_hook(line)) {
+        skip_block(rest);
+      } else if (!line.starts_with("#pragma once")) {
+        text_ += line;
+        text_ += '\n';
+      }
+    }
+  }
+  std::string take() { return std::move(text_); }
+
+ private:
+  static constexpr std::string_view k_hook = "DS_HOOK_";
+
+  bool is_missing_hook(std::string_view line) const {
+    constexpr std::string_view k_ifdef = "ifdef ";
+    std::string_view name = directive_of(line);
+    if (!name.starts_with(k_ifdef)) return false;
+    name.remove_prefix(k_ifdef.size());
+    return name.starts_with(k_hook) && !hooks_.contains(name);
+  }
+
+  std::string text_;
+  std::set<std::string, std::less<>> done_, hooks_;
+};
 
 /// "#define NAME(X) X(a, 0) X(b, 1)"
 std::string list_definition(std::string_view name, const std::vector<std::string>& entries,
@@ -87,7 +139,18 @@ std::vector<std::string> prefixes(std::span<const NodeType> types, const std::ve
   return list;
 }
 
+/// Of each material.
+std::vector<int> chooser_depths(const Scene& scene) {
+  std::vector<int> depths(scene.materials.size(), 0);
+  // Children stand before their parent.
+  for (std::size_t i = 0; i < depths.size(); ++i)
+    for (const int child : scene.materials[i].children)
+      if (child >= 0) depths[i] = std::max(depths[i], depths[static_cast<std::size_t>(child)] + 1);
+  return depths;
+}
+
 void add_materials(const Scene& scene, Features& f) {
+  const std::vector<int> depths = chooser_depths(scene);
   const std::vector<bool> used = used_materials(scene);
   std::vector<bool> present(material_types().size(), false);
   std::vector<bool> textures(texture_types().size(), false);
@@ -97,6 +160,7 @@ void add_materials(const Scene& scene, Features& f) {
     const NodeType& type = material_types()[static_cast<std::size_t>(material.type)];
     present[static_cast<std::size_t>(material.type)] = true;
     f.material_inputs = std::max(f.material_inputs, input_floats(type));
+    f.chooser_depth = std::max(f.chooser_depth, depths[i]);
     const TextureCode code = texture_code(scene, material);
     for (const int texture : code.types)
       textures[static_cast<std::size_t>(texture)] = true;
@@ -153,6 +217,33 @@ bool any_material(const Features& f, unsigned trait) {
 bool any_light(const Features& f, unsigned trait) {
   return std::any_of(f.lights.begin(), f.lights.end(),
                      [&](const std::string& name) { return has_trait(light_type(name), trait); });
+}
+
+/// Of materials and textures.
+std::string material_list(const Features& f) {
+  std::string text = list_definition("DS_MATERIALS", f.materials, f.materials);
+  if (f.textures.empty()) return text;
+  text += list_definition("DS_TEXTURES", f.textures, f.textures);
+  return text + fmt::format("#define DS_TEXTURE_STACK {}\n", f.texture_stack);
+}
+
+std::string input_definition(const Features& f) {
+  return fmt::format("#define DS_MATERIAL_INPUTS {}\n", f.material_inputs);
+}
+
+std::string light_plane_list(const Features& f) {
+  if (f.light_planes.empty()) return "";
+  return "#define DS_HOOK_LIGHT_PLANES\n" +
+         list_definition("DS_LIGHT_PLANES", f.light_planes, f.light_planes) +
+         fmt::format("#define DS_LIGHT_PLANE_COUNT {}\n", f.light_planes.size());
+}
+
+std::string chooser_list(const Features& f) {
+  if (f.choosers.empty()) return "";
+  std::vector<std::string> all = f.materials;
+  all.insert(all.end(), f.choosers.begin(), f.choosers.end());
+  return list_definition("DS_CHOOSERS", f.choosers, all) +
+         fmt::format("#define DS_FIRST_CHOOSER {}\n", f.materials.size());
 }
 
 }  // namespace
@@ -236,46 +327,49 @@ Features all_features() {
 }
 
 std::string assemble(const std::string& definitions, std::span<const std::string> paths) {
-  std::string text = definitions;
-  std::set<std::string, std::less<>> done;
+  Assembly assembly(definitions);
   for (const std::string& path : paths)
-    append_with_includes(path, done, text);
-  return text;
+    assembly.add(path);
+  return assembly.take();
 }
 
-std::string path_program_text(const Features& f) {
-  std::string head = list_definition("DS_MATERIALS", f.materials, f.materials);
-  if (!f.textures.empty()) {
-    head += list_definition("DS_TEXTURES", f.textures, f.textures);
-    head += fmt::format("#define DS_TEXTURE_STACK {}\n", f.texture_stack);
-  }
-  if (!f.lights.empty()) head += list_definition("DS_LIGHTS", f.lights, f.lights);
-  if (!f.escape_lights.empty())
-    head += list_definition("DS_ESCAPE_LIGHTS", f.escape_lights, f.lights);
-  head += fmt::format("#define DS_MATERIAL_INPUTS {}\n", f.material_inputs);
-  // Alone, a constant sky needs no next-event estimation at all.
-  if (samples_lights(f)) head += "#define DS_LIGHTS_SAMPLED\n";
-  if (Features::number(f.lights, "mesh") >= 0) head += "#define DS_MESH_LIGHTS\n";
-  if (!f.choosers.empty()) {
-    std::vector<std::string> all = f.materials;
-    all.insert(all.end(), f.choosers.begin(), f.choosers.end());
-    head += list_definition("DS_CHOOSERS", f.choosers, all);
-    head += fmt::format("#define DS_FIRST_CHOOSER {}\n", f.materials.size());
-  }
-  if (f.lens) head += "#define DS_LENS\n";
-  if (f.camera_invisible) head += "#define DS_CAMERA_INVISIBLE\n";
-  if (f.lobe_choice) head += "#define DS_LOBE_CHOICE\n";
-  head += trait_definition("DS_TRANSMITS", f, kernels::k_trait_transmits);
-  if (f.guide) head += trait_definition("DS_GUIDED", f, kernels::k_trait_receives_caustics);
+std::string material_definitions(const Features& f) {
+  return material_list(f) + input_definition(f) + chooser_list(f) +
+         fmt::format("#define DS_CHOOSER_DEPTH {}\n", f.chooser_depth);
+}
 
+std::vector<std::string> material_files(const Features& f) {
   std::vector<std::string> paths;
   for (const std::string& name : f.textures)
     paths.push_back(fmt::format("tracer/kernels/textures/{}.h", name));
   for (const auto* list : {&f.materials, &f.choosers})
     for (const std::string& name : *list)
       paths.push_back(fmt::format("tracer/kernels/materials/{}.h", name));
+  return paths;
+}
+
+std::string path_program_text(const Features& f) {
+  std::string head = material_list(f);
+  if (!f.lights.empty()) head += list_definition("DS_LIGHTS", f.lights, f.lights);
+  if (!f.escape_lights.empty())
+    head += list_definition("DS_ESCAPE_LIGHTS", f.escape_lights, f.lights);
+  head += input_definition(f);
+  // Alone, a constant sky needs no next-event estimation at all.
+  if (samples_lights(f)) head += "#define DS_LIGHTS_SAMPLED\n";
+  if (Features::number(f.lights, "mesh") >= 0) head += "#define DS_MESH_LIGHTS\n";
+  head += chooser_list(f);
+  if (f.lens) head += "#define DS_LENS\n";
+  if (f.camera_invisible) head += "#define DS_CAMERA_INVISIBLE\n";
+  if (f.lobe_choice) head += "#define DS_LOBE_CHOICE\n";
+  head += trait_definition("DS_TRANSMITS", f, kernels::k_trait_transmits);
+  if (f.guide) head += trait_definition("DS_GUIDED", f, kernels::k_trait_receives_caustics);
+  head += light_plane_list(f);
+
+  std::vector<std::string> paths = material_files(f);
   for (const std::string& name : f.lights)
     paths.push_back(fmt::format("tracer/kernels/lights/{}.h", name));
+  for (const std::string& name : f.light_planes)
+    paths.push_back(fmt::format("tracer/kernels/planes/{}.h", name));
   paths.emplace_back("tracer/kernels/path.cl");
   return assemble(head, paths);
 }

@@ -25,6 +25,8 @@ struct Features {
   bool guide = false;  ///< surfaces that receive caustics look for what the model casts (guide.h)
   int material_inputs = 1;  ///< most floats any used material's inputs take
   int texture_stack = 1;    ///< most values any texture program has on its stack at once
+  std::vector<std::string> light_planes;  ///< traced beside the picture; features_of asks for none
+  int chooser_depth = 0;  ///< most materials that choose on the way to one that does not
 
   bool operator==(const Features&) const = default;
   bool has_material(std::string_view prefix) const;
@@ -54,10 +56,16 @@ Features all_features();
 /// once, in order of inclusion. The lane count is not in it (it is the build option DS_LANES: it
 /// changes no bit of a picture).
 std::string path_program_text(const Features& features);
+/// What the source of a program that reads materials begins with, and the files of these: as in
+/// path_program_text, for what a point's material is.
+std::string material_definitions(const Features& features);
+std::vector<std::string> material_files(const Features& features);
 /// Source of single rays.
 std::string rays_program_text();
 
-/// Kernel files behind definitions, their includes put in place; each file once.
+/// Kernel files behind definitions, their includes put in place; each file once. What they have
+/// between `#ifdef DS_HOOK_...` and `#endif` is left out where the definitions lack that: it is in no
+/// program, and no key, that does not ask for it.
 std::string assemble(const std::string& definitions, std::span<const std::string> paths);
 
 }  // namespace ds

@@ -6,6 +6,9 @@
 
 #include "tracer/kernels/layout.h"
 
+#define DS_HOOK_ALBEDO
+#define DS_HOOK_LIGHT_PLANES
+
 #if defined(__GNUC__)
 #  pragma GCC diagnostic push
 // One signature serves all nodes, so some leave parameters unused; casts are spelled as OpenCL C

@@ -13,6 +13,14 @@
 //   BsdfValue  NAME_evaluate(const real* p, Viewer viewer, real3 wi)
 //   BsdfSample NAME_sample(const real* p, Viewer viewer, real2 u, real2 lobe)
 //   natural    NAME_child(const real* p, mask outside, mask here, real* choice)
+//   real3      NAME_albedo(const real* p, Viewer viewer)   share of the light falling along the normal
+//                            that is sent on, up or down; the viewer is there
+//   real       NAME_second(const real* p, mask outside)    of one that chooses: odds of the second child
+//   real3      NAME_diffuse(const real* p, Viewer viewer, real3 wi)   the part of NAME_evaluate's value
+//                            that counts as diffuse; the rest is glossy
+//
+// The last stands behind `#ifdef DS_HOOK_LIGHT_PLANES`, the two before behind `#ifdef DS_HOOK_ALBEDO`:
+// they are in no program that does not ask for them, nor in its key.
 //
 // `p` holds the inputs' values at the surface point, behind them the numbers, and from NAME_end on
 // what was derived. No material returns NaN or a negative number for any input in range.

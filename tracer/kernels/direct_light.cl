@@ -10,6 +10,9 @@
 #include "tracer/kernels/leaving.h"
 #include "tracer/kernels/ray_counts.h"
 #include "tracer/kernels/tied_lanes.cl"
+#ifdef DS_HOOK_LIGHT_PLANES
+#  include "tracer/kernels/first_lobe.h"
+#endif
 
 /// Pairs of dimensions a sample uses: two for the camera, then k_pairs_vertex at each path vertex.
 enum { k_pair_pixel, k_pair_lens, k_pairs_camera };
@@ -36,6 +39,10 @@ typedef struct {
   real3 closing;            ///< radiance so far of the sample before the one in flight
   natural closing_quarter;  ///< where that sample is in its pixel
   mask closes;              ///< it still waits for its shadow ray
+#ifdef DS_HOOK_LIGHT_PLANES
+  Contribution met, asked;            ///< what the path's ray and its shadow ray would bring
+  PlaneLight planes, closing_planes;  ///< of `radiance` and of `closing`
+#endif
   DS_RAY_COUNTS_FIELD
 } Paths;
 
@@ -76,6 +83,12 @@ DS_FN void start_paths(Paths* paths, mask start, const Pixels* pixels, const Vie
   paths->specular = choose_natural(start, none, paths->specular);
   paths->layer = choose_natural(start, (natural)(k_none), paths->layer);
   paths->alive = paths->alive | start;
+#ifdef DS_HOOK_LIGHT_PLANES
+  clear_light(&paths->planes, start);
+  paths->met.scatterings = paths->vertices;
+  paths->met.specular = paths->met.specular & !start;
+  paths->met.diffuse = choose(start, splat(zero), paths->met.diffuse);
+#endif
 }
 
 #ifdef DS_MESH_LIGHTS
@@ -176,6 +189,15 @@ DS_FN void ask_for_light(Paths* paths, mask active, const Surface* s, const Mate
     chosen.direct = scale(chosen.direct, 1.0f / odds);
   }
   paths->direct = chosen.direct;
+#  ifdef DS_HOOK_LIGHT_PLANES
+  paths->asked = paths->met;
+  paths->asked.scatterings = paths->vertices;
+  const mask first = active & (paths->vertices == 1u);
+  if (any_lane(first)) {
+    const real3 share = diffuse_share(m, l, to_local(l->frame, chosen.wi), first);
+    paths->asked.diffuse = choose(first, share, paths->asked.diffuse);
+  }
+#  endif
   LaneRays* shadow = &paths->shadow;
   shadow->wanted = sum > 0.0f;
   shadow->origin = offset_origin(s->position, s->error, s->normal, chosen.wi);

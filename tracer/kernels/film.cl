@@ -5,6 +5,9 @@
 #include "tracer/kernels/film_data.h"
 #include "tracer/kernels/math.h"
 #include "tracer/kernels/view_data.h"
+#ifdef DS_HOOK_LIGHT_PLANES
+#  include "tracer/kernels/light_planes.h"
+#endif
 
 /// The pixels that a work-item's lanes are at, one a lane.
 typedef struct {
@@ -37,6 +40,10 @@ typedef struct {
   size_t place[DS_LANES];  ///< of each lane's pixel in the film: plane 0; or k_no_pixel
   __global float* film;
   float limit;  ///< ViewData::sample_limit
+#ifdef DS_HOOK_LIGHT_PLANES
+  LightSums light;
+  real accepted;  ///< what share of the samples that were added last was
+#endif
 } Sums;
 
 DS_FN real* sum_of(Sums* sums, uint plane) {
@@ -55,6 +62,9 @@ DS_FN void clear_sums(Sums* sums, __global float* film, const ViewData* view) {
 /// Writes a lane's sums to the film and reads those of its next pixel, either where there is one.
 DS_FN void change_sums(Sums* sums, int lane, size_t next) {
   const size_t last = sums->place[lane];
+#ifdef DS_HOOK_LIGHT_PLANES
+  change_light_sums(&sums->light, lane, last, next, k_no_pixel);
+#endif
   for (int i = 0; i < k_sums; ++i) {
     if (last != k_no_pixel) sums->film[last + (uint)(i * k_tile_pixels)] = sums->plane[i][lane];
     if (next != k_no_pixel) sums->plane[i][lane] = sums->film[next + (uint)(i * k_tile_pixels)];
@@ -155,11 +165,18 @@ DS_FN mask is_within(real x, float limit) {
 
 /// Adds the finished samples in `done`, by number, to the quarters of the pixels they are in.
 DS_FN void add_samples(Sums* sums, mask done, natural number, natural quarter, real3 radiance) {
+#ifdef DS_HOOK_LIGHT_PLANES
+  const real whole = max_component(radiance);
+#endif
   const mask in_range = is_within(radiance.x, sums->limit) & is_within(radiance.y, sums->limit) &
                         is_within(radiance.z, sums->limit);
   mask good = done & in_range;
   const mask odd = done & !in_range;
   if (any_lane(odd)) good = good | tame_samples(sums, &radiance, odd);
+#ifdef DS_HOOK_LIGHT_PLANES
+  sums->accepted =
+      choose(good, choose(odd, max_component(radiance) / whole, (real)(1.0f)), (real)(0.0f));
+#endif
   const mask even = (number & 1u) == 0u;
   const real sample[3] = {radiance.x, radiance.y, radiance.z};
   for (uint q = 0; q < 4u; ++q) {

@@ -6,6 +6,9 @@
 #include "tracer/kernels/plane.h"
 #include "tracer/kernels/ties.cl"
 #include "tracer/kernels/view_data.h"
+#ifdef DS_HOOK_ALBEDO
+#  include "tracer/kernels/albedo.h"
+#endif
 
 DS_FN bool is_camera_invisible(DS_GLOBAL float* triangles, uint id) {
   const uint flags = as_uint(triangles[id * k_triangle_words + k_triangle_flags]);
@@ -36,12 +39,16 @@ DS_FN Ray pixel_ray(const __global ViewData* view, uint i) {
 
 /// planes: all numbers of the first plane, pixel by pixel, then those of the next. material_ids: by
 /// the material's row.
-__kernel void trace_planes(const __global float8* restrict nodes,
-                           const __global float8* restrict leaves,
-                           const __global float* restrict triangles,
-                           const __global uint* restrict material_ids,
-                           const __global ViewData* restrict view,
-                           __global float* restrict planes) {
+__kernel void trace_planes(
+    const __global float8* restrict nodes, const __global float8* restrict leaves,
+    const __global float* restrict triangles, const __global uint* restrict material_ids,
+    const __global ViewData* restrict view, __global float* restrict planes
+#ifdef DS_HOOK_ALBEDO
+    ,
+    const __global float* restrict materials, const __global float* restrict programs,
+    const __global float* restrict tables, const __global SceneData* restrict scene_data
+#endif
+) {
   const uint i = get_global_id(0);
   const uint pixels = view->width * view->height;
   if (i >= pixels) return;
@@ -77,6 +84,16 @@ __kernel void trace_planes(const __global float8* restrict nodes,
     load_triangles(triangles, &found, &hits);
     const real3 origin = vec(ray.origin[0], ray.origin[1], ray.origin[2]);
     h.surface = surface_of(&hits, origin, unit(direction));
+#endif
+#ifdef DS_HOOK_ALBEDO
+    h.surface.colors = hit.id + 1u;
+    MaterialTables t;
+    t.materials = materials;
+    t.programs = programs;
+    t.tables = tables;
+    t.material_words = scene_data->material_words;
+    h.albedo = surface_albedo(
+        t, as_uint(triangles[hit.id * k_triangle_words + k_triangle_material]), &h.surface);
 #endif
   }
 #define DS_PLANE(name, before)                                                       \

@@ -7,6 +7,7 @@
 namespace ds::DS_KERNELS {
 #include "tracer/kernels/film_data.h"
 #include "tracer/kernels/guide_data.h"
+#include "tracer/kernels/light_film_data.h"
 #include "tracer/kernels/plane_traits.h"
 #include "tracer/kernels/ray_counts_data.h"
 #include "tracer/kernels/scene_data.h"

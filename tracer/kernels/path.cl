@@ -30,6 +30,15 @@ DS_FN mask scatter(Paths* paths, mask active, const Surface* s, const MaterialPo
   // Along the surface rounding may have taken a direction to the other side.
   const real true_side = dot(wi, s->normal);
   const mask leaks = choose(up, true_side, -true_side) <= 0.0f;
+#ifdef DS_HOOK_LIGHT_PLANES
+  paths->met.scatterings = paths->vertices;
+  const mask first = active & (paths->vertices == 1u);
+  if (any_lane(first)) {
+    const real3 share = diffuse_share(m, l, to_local(l->frame, wi), first & !b.specular);
+    paths->met.specular = choose_mask(first, b.specular, paths->met.specular);
+    paths->met.diffuse = choose(first, share, paths->met.diffuse);
+  }
+#endif
   const real3 throughput = mul(paths->throughput, b.weight);
   const real eta_scale = paths->eta_scale * b.eta_scale;
   const mask plays = paths->vertices >= view->roulette_depth;
@@ -64,6 +73,13 @@ DS_FN void add_direct(Paths* paths, Sums* sums, const BatchHits* found) {
   if (any_lane(paths->closes))
     add_samples(sums, paths->closes, paths->sample - 1u, paths->closing_quarter,
                 add(paths->closing, light));
+#ifdef DS_HOOK_LIGHT_PLANES
+  contribute(&paths->closing_planes, paths->closes, &paths->asked, light);
+  if (any_lane(paths->closes))
+    add_light(&sums->light, paths->closes, paths->closing_quarter, sums->accepted,
+              &paths->closing_planes);
+  contribute(&paths->planes, lit & !paths->closes, &paths->asked, light);
+#endif
   paths->closes = (mask)(0);
   paths->shadow.wanted = (mask)(0);
 }
@@ -171,6 +187,9 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
                                       paths->direction, paths->pdf);
     paths->radiance =
         choose(escapes, add(paths->radiance, mul(paths->throughput, sky)), paths->radiance);
+#  ifdef DS_HOOK_LIGHT_PLANES
+    contribute(&paths->planes, escapes, &paths->met, mul(paths->throughput, sky));
+#  endif
   }
 #endif
   if (!any_lane(hit)) return ends;
@@ -193,6 +212,10 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
   if (!any_lane(hit)) return ends;
 #endif
 #ifdef DS_MESH_LIGHTS
+#  ifdef DS_HOOK_LIGHT_PLANES
+  contribute(&paths->planes, hit, &paths->met,
+             mul(paths->throughput, emitted(t, &hits, &s, paths->origin, wo, hit, paths->pdf)));
+#  endif
   paths->radiance =
       add(paths->radiance,
           mul(paths->throughput, emitted(t, &hits, &s, paths->origin, wo, hit, paths->pdf)));
@@ -241,7 +264,12 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
 /// Traces the queue's pixels.
 DS_OUT_OF_LINE void trace_pixels(PixelQueue* queue, const __global SceneData* restrict scene_data,
                                  const __global ViewData* restrict view_data, const SceneTables* t,
-                                 __global float* restrict film DS_RAY_COUNTS_ARGUMENT) {
+                                 __global float* restrict film
+#ifdef DS_HOOK_LIGHT_PLANES
+                                 ,
+                                 __global float* restrict light_film
+#endif
+                                     DS_RAY_COUNTS_ARGUMENT) {
   const SceneData scene = *scene_data;
   const ViewData view = *view_data;
   Pixels pixels;
@@ -250,6 +278,14 @@ DS_OUT_OF_LINE void trace_pixels(PixelQueue* queue, const __global SceneData* re
   Sums sums;
   clear_sums(&sums, film, &view);
   Paths paths;
+#ifdef DS_HOOK_LIGHT_PLANES
+  clear_light_sums(&sums.light, light_film);
+  paths.met.specular = paths.asked.specular = (mask)(0);
+  paths.met.scatterings = paths.asked.scatterings = (natural)(0u);
+  paths.met.diffuse = paths.asked.diffuse = splat((real)(0.0f));
+  clear_light(&paths.planes, (mask)(-1));
+  clear_light(&paths.closing_planes, (mask)(-1));
+#endif
   DS_CLEAR_RAY_COUNTS(paths);
   paths.alive = paths.closes = paths.shadow.wanted = paths.rises = (mask)(0);
   paths.layer = (natural)(k_none);
@@ -271,6 +307,11 @@ DS_OUT_OF_LINE void trace_pixels(PixelQueue* queue, const __global SceneData* re
     const mask over = ends.done | ends.closes;
     if (any_lane(ends.done))
       add_samples(&sums, ends.done, paths.sample, paths.quarter, paths.radiance);
+#ifdef DS_HOOK_LIGHT_PLANES
+    if (any_lane(ends.done))
+      add_light(&sums.light, ends.done, paths.quarter, sums.accepted, &paths.planes);
+    copy_light(&paths.closing_planes, ends.closes, &paths.planes);
+#endif
     paths.closing = choose(ends.closes, paths.radiance, paths.closing);
     paths.closing_quarter = choose_natural(ends.closes, paths.quarter, paths.closing_quarter);
     paths.closes = ends.closes;
@@ -289,7 +330,12 @@ __kernel void trace_paths(
     const __global float* restrict programs, const __global float* restrict lights,
     const __global float* restrict tables, const __global SceneData* restrict scene_data,
     const __global float* restrict guide, const __global ViewData* restrict view_data,
-    const __global uint* restrict launch, __global float* restrict film DS_RAY_COUNTS_ARGUMENT) {
+    const __global uint* restrict launch, __global float* restrict film
+#ifdef DS_HOOK_LIGHT_PLANES
+    ,
+    __global float* restrict light_film
+#endif
+        DS_RAY_COUNTS_ARGUMENT) {
   PixelQueue queue = pixel_queue(launch, (uint)get_global_id(0));
   if (queue.next >= queue.end) return;
   SceneTables t;
@@ -304,5 +350,10 @@ __kernel void trace_paths(
   t.lights.tables = tables;
   t.lights.triangles = triangles;
   t.guide = guide;
-  trace_pixels(&queue, scene_data, view_data, &t, film DS_RAY_COUNTS_PASSED);
+  trace_pixels(&queue, scene_data, view_data, &t, film
+#ifdef DS_HOOK_LIGHT_PLANES
+               ,
+               light_film
+#endif
+                   DS_RAY_COUNTS_PASSED);
 }

@@ -21,6 +21,9 @@ typedef struct {
   natural object;       ///< object id
   natural material_id;  ///< id of the material
   Surface surface;
+#ifdef DS_HOOK_ALBEDO
+  real3 albedo;  ///< surface_albedo of albedo.h
+#endif
 } HitPoint;
 
 DS_FN void put_plane3(real* out, real3 v) {

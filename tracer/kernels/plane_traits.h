@@ -11,6 +11,9 @@ enum {
   k_plane_objects = 8,        ///< HitPoint::object of others than the model
   k_plane_material_ids = 16,  ///< HitPoint::material_id
   k_plane_alone = 32,         ///< nothing but the model: the rest of the scene is not there
+  k_plane_materials =
+      4096,              ///< HitPoint::albedo: materials, textures and what of meshes these read
+  k_plane_light = 8192,  ///< the picture's paths: contribution.h, not plane.h
   // Its numbers are ...
   k_plane_words = 64,        ///< natural numbers, by their bits
   k_plane_exr = 128,         ///< to be had as EXR, of floats or halves

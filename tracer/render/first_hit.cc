@@ -35,6 +35,11 @@ bool has_triangles(const Scene& scene) {
                      [](const Object& object) { return !object.mesh.triangles.empty(); });
 }
 
+bool read_materials(const std::vector<const PlaneType*>& types) {
+  return std::any_of(types.begin(), types.end(),
+                     [](const PlaneType* type) { return reads_materials(*type); });
+}
+
 std::vector<std::uint32_t> material_ids(const Scene& scene) {
   std::vector<std::uint32_t> ids;
   for (const Material& material : scene.materials)
@@ -45,11 +50,13 @@ std::vector<std::uint32_t> material_ids(const Scene& scene) {
 }  // namespace
 
 Kernel& Tracer::State::plane_kernel(const std::vector<const PlaneType*>& types) {
-  const auto found = plane_kernels.find(types);
-  if (found != plane_kernels.end()) return found->second;
-  const Program program =
-      device.build(planes_program_text(types), k_strict_options, options.cache_folder);
-  return plane_kernels.emplace(types, device.kernel(program, "trace_planes")).first->second;
+  std::optional<Features> features;
+  if (read_materials(types)) features = packed_for;
+  for (PlaneKernel& known : plane_kernels)
+    if (known.types == types && known.features == features) return known.kernel;
+  const Program program = device.build(planes_program_text(types, features.value_or(Features{})),
+                                       k_strict_options, options.cache_folder);
+  return plane_kernels.emplace_back(types, features, device.kernel(program, "trace_planes")).kernel;
 }
 
 std::vector<Plane> Tracer::State::launch_planes(const DeviceScene& of, const Scene& seen,
@@ -71,6 +78,9 @@ std::vector<Plane> Tracer::State::launch_planes(const DeviceScene& of, const Sce
   unsigned argument = 0;
   for (const Buffer* b : {&of.nodes, &of.leaves, &of.triangles, &ids, &view_buffer, &planes})
     kernel.set(argument++, *b);
+  if (read_materials(types))
+    for (const Buffer* b : {&of.materials, &of.programs, &of.tables, &of.data})
+      kernel.set(argument++, *b);
   device.run(kernel, 0, round_up(pixels, local_size), local_size);
   if (options.count_rays) ray_counts.geometry += pixels;
   std::vector<float> all(pixels * static_cast<std::size_t>(numbers));
@@ -95,8 +105,7 @@ std::vector<Plane> Tracer::trace_planes(const Camera& camera, int width, int hei
   std::vector<Plane> traced, of_alone;
   if (!of_scene.empty()) {
     if (!s.packed_for) {
-      // Any numbering will do: no material is asked.
-      Features features = features_of(*s.scene, camera);
+      Features features = s.features(*s.scene, camera);
       features.lens = false;
       s.take(pack_scene(*s.scene, features, s.quality(), s.options.bvh_width, &s.pack_cache),
              features);

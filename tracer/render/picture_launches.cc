@@ -74,7 +74,7 @@ void Tracer::Picture::add(std::span<const TileStep> steps,
   const std::size_t items = round_up((pixels + share - 1) / share, s_.local_size);
   const Buffer words = s_.device.upload(launch_words(film_, steps, share));
   s_.path_kernel.set(launch_argument_, words);
-  s_.start_counting(launch_argument_ + 2, items);
+  s_.start_counting(counts_argument_, items);
   std::uint64_t samples = 0;
   for (const TileStep& step : steps)
     samples += std::uint64_t{step.end - film_.tile_spp[step.tile]} * film_.tile_pixels(step.tile);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tracer/render/film.h"
+#include "tracer/render/light_planes.h"
 #include "tracer/render/schedule.h"
 #include "tracer/render/tracer_state.h"
 #include "tracer/render/view.h"
@@ -14,8 +15,9 @@ namespace ds {
 /// One picture under way: its film on the device, and how it gets more samples.
 class Tracer::Picture {
  public:
+  /// `light_planes`: how many the program traces beside it; then the film must be empty.
   Picture(State& state, const Camera& camera, const EngineSettings& engine, FilmSums film,
-          const std::atomic<bool>* stop)
+          std::size_t light_planes, const std::atomic<bool>* stop)
       : s_(state), film_(std::move(film)), stop_(stop) {
     const kernels::ViewData view =
         view_data(camera, engine, ray_start_m(*s_.scene, camera, engine.width, engine.height));
@@ -28,11 +30,23 @@ class Tracer::Picture {
                             &t.tables, &t.data, &guide, &v})
       s_.path_kernel.set(argument++, *b);
     launch_argument_ = argument;
-    s_.path_kernel.set(argument + 1, sums_);
+    s_.path_kernel.set(++argument, sums_);
+    light_words_ = light_film_words(film_, light_planes);
+    if (light_words_ > 0) {
+      light_sums_ = s_.device.upload(std::vector<float>(light_words_));
+      s_.path_kernel.set(++argument, light_sums_);
+    }
+    counts_argument_ = argument + 1;
     lit_ = s_.is_lit(camera);
   }
 
   FilmSums& film() { return film_; }
+  /// Words of the planes' film as it stands.
+  std::vector<float> light_film() const {
+    std::vector<float> words(light_words_);
+    s_.device.read(light_sums_, std::as_writable_bytes(std::span(words)));
+    return words;
+  }
 
   /// Traces the steps in launches of about half a second: often enough to report and to stop.
   /// `progress` gets the samples done of these steps.
@@ -50,8 +64,9 @@ class Tracer::Picture {
   State& s_;
   FilmSums film_;
   const std::atomic<bool>* stop_;
-  Buffer view_, sums_;
-  unsigned launch_argument_ = 0;
+  Buffer view_, sums_, light_sums_;
+  std::size_t light_words_ = 0;
+  unsigned launch_argument_ = 0, counts_argument_ = 0;
   bool lit_ = true;
   double samples_a_second_ = 0;  ///< of the last launch
 };

@@ -84,8 +84,9 @@ struct Film {
 struct FilmSums;
 struct PlaneType;
 
-/// What one ray a pixel, through its centre and the pinhole (no lens), finds of its type. Row 0 is
-/// the top, left to right; `type->width` numbers a pixel, by their bits where they are words.
+/// What one ray a pixel, through its centre and the pinhole (no lens), finds of its type; of a plane of
+/// light, what all the picture's paths do, as the picture's film is made of them. Row 0 is the top,
+/// left to right; `type->width` numbers a pixel, by their bits where they are words.
 struct Plane {
   const PlaneType* type = nullptr;
   int width = 0, height = 0;
@@ -97,6 +98,12 @@ struct Geometry {
   int width = 0, height = 0;
   std::vector<std::uint8_t> mask;  ///< 255 where the model is the nearest thing hit, else 0
   std::vector<float> depth;  ///< planar z along the viewing axis in metres; 0 where nothing is hit
+};
+
+/// A picture's film and shares of it.
+struct LitPlanes {
+  Film film;
+  std::vector<Plane> planes;
 };
 
 struct TraceProgress {
@@ -162,17 +169,26 @@ class Tracer {
   Film trace(const Camera& camera, const EngineSettings& engine,
              const std::function<void(const TraceProgress&)>& progress = {},
              const std::atomic<bool>* stop = nullptr, FilmSums* kept = nullptr);
+  /// The same film, and planes of light (is_of_light) of the same samples, in this order; each has the
+  /// same bits whatever the others are. Kept films have none: it starts anew, `reached` is where it
+  /// ends. By fast arithmetic the film's bits may be others.
+  LitPlanes trace_light(const Camera& camera, const EngineSettings& engine,
+                        const std::vector<const PlaneType*>& types,
+                        const std::function<void(const TraceProgress&)>& progress = {},
+                        const std::atomic<bool>* stop = nullptr, FilmSums* reached = nullptr);
   /// Packs the scene set and gets its program; `trace` does so where it was not done.
-  void prepare(const Camera& camera, const EngineSettings& engine);
+  void prepare(const Camera& camera, const EngineSettings& engine,
+               const std::vector<const PlaneType*>& light_planes = {});
   /// Starts to get the program of a later picture ready in a thread of its own, which goes on while
   /// `trace` runs. Of the scene only what `features_of` looks at matters. False, at once, where the
   /// program is known already.
-  bool prepare_ahead(const Scene& scene, const Camera& camera, const EngineSettings& engine);
+  bool prepare_ahead(const Scene& scene, const Camera& camera, const EngineSettings& engine,
+                     const std::vector<const PlaneType*>& light_planes = {});
   ProgramCounts programs() const;
   UploadCounts uploads() const;
   /// Of all pictures and geometry traced, where TracerOptions::count_rays was set; else none.
   RayCounts ray_counts() const;
-  /// Of these types, in this order; each has the same bits whatever the others are.
+  /// Of these types, which ask no light, in this order; each has the same bits whatever the others are.
   std::vector<Plane> trace_planes(const Camera& camera, int width, int height,
                                   const std::vector<const PlaneType*>& types);
   /// The planes mask and depth.
@@ -183,9 +199,11 @@ class Tracer {
 
  private:
   std::vector<std::uint8_t> error_region(const Camera& camera, const EngineSettings& engine);
+  class Picture;
+  Film finish(Picture& picture, const Camera& camera, const EngineSettings& engine,
+              const std::function<void(const TraceProgress&)>& progress);
 
   struct State;
-  class Picture;
   std::unique_ptr<State> state_;
 };
 

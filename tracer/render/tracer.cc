@@ -43,12 +43,15 @@ void Tracer::set_scene(Scene scene) {
   state_->scene = std::move(scene);
 }
 
-void Tracer::prepare(const Camera& camera, const EngineSettings& engine) {
-  state_->prepare(camera, engine);
+void Tracer::prepare(const Camera& camera, const EngineSettings& engine,
+                     const std::vector<const PlaneType*>& light_planes) {
+  state_->prepare(camera, engine, light_planes);
 }
 
-bool Tracer::prepare_ahead(const Scene& scene, const Camera& camera, const EngineSettings& engine) {
-  return state_->programs.make_ahead(state_->features(scene, camera), engine.math);
+bool Tracer::prepare_ahead(const Scene& scene, const Camera& camera, const EngineSettings& engine,
+                           const std::vector<const PlaneType*>& light_planes) {
+  return state_->programs.make_ahead(
+      with_light_planes(state_->features(scene, camera), light_planes), engine.math);
 }
 
 ProgramCounts Tracer::programs() const {
@@ -71,14 +74,10 @@ std::vector<std::uint8_t> Tracer::error_region(const Camera& camera, const Engin
   return shown ? mask : std::vector<std::uint8_t>{};
 }
 
-Film Tracer::trace(const Camera& camera, const EngineSettings& engine,
-                   const std::function<void(const TraceProgress&)>& progress,
-                   const std::atomic<bool>* stop, FilmSums* kept) {
-  state_->prepare(camera, engine);
-  FilmSums begun = kept != nullptr ? std::move(*kept) : FilmSums{};
-  if (!goes_on(engine, begun)) begun = empty_film(engine.width, engine.height);
-  const std::uint64_t before = begun.samples();
-  Picture picture(*state_, camera, engine, std::move(begun), stop);
+/// Traces what the picture lacks.
+Film Tracer::finish(Picture& picture, const Camera& camera, const EngineSettings& engine,
+                    const std::function<void(const TraceProgress&)>& progress) {
+  const std::uint64_t before = picture.film().samples();
   const int most = engine.target ? engine.target->max_spp : engine.spp;
   const std::uint64_t total = picture.film().pixels() * static_cast<std::uint64_t>(most) - before;
   const auto trace_steps = [&](const std::vector<TileStep>& steps) {
@@ -107,8 +106,35 @@ Film Tracer::trace(const Camera& camera, const EngineSettings& engine,
     film = film_of(picture.film(), filter);
   }
   film.traced_samples = picture.film().samples() - before;
+  return film;
+}
+
+Film Tracer::trace(const Camera& camera, const EngineSettings& engine,
+                   const std::function<void(const TraceProgress&)>& progress,
+                   const std::atomic<bool>* stop, FilmSums* kept) {
+  state_->prepare(camera, engine);
+  FilmSums begun = kept != nullptr ? std::move(*kept) : FilmSums{};
+  if (!goes_on(engine, begun)) begun = empty_film(engine.width, engine.height);
+  Picture picture(*state_, camera, engine, std::move(begun), 0, stop);
+  Film film = finish(picture, camera, engine, progress);
   if (kept != nullptr) *kept = std::move(picture.film());
   return film;
+}
+
+LitPlanes Tracer::trace_light(const Camera& camera, const EngineSettings& engine,
+                              const std::vector<const PlaneType*>& types,
+                              const std::function<void(const TraceProgress&)>& progress,
+                              const std::atomic<bool>* stop, FilmSums* reached) {
+  state_->prepare(camera, engine, types);
+  Picture picture(*state_, camera, engine, empty_film(engine.width, engine.height), types.size(),
+                  stop);
+  LitPlanes traced;
+  traced.film = finish(picture, camera, engine, progress);
+  if (!types.empty())
+    traced.planes = light_planes_of(types, picture.light_film(), picture.film(),
+                                    PixelFilter(engine.filter_width));
+  if (reached != nullptr) *reached = std::move(picture.film());
+  return traced;
 }
 
 }  // namespace ds

@@ -38,11 +38,12 @@ Tracer::State::State(const TracerOptions& o)
                                             : 64;
 }
 
-void Tracer::State::prepare(const Camera& camera, const EngineSettings& engine) {
+void Tracer::State::prepare(const Camera& camera, const EngineSettings& engine,
+                            const std::vector<const PlaneType*>& light_planes) {
   if (!scene) fail(ErrorKind::device, "no scene was set before tracing");
-  const Features wanted = features(*scene, camera);
+  Features numbering = features(*scene, camera);
+  const Features wanted = with_light_planes(numbering, light_planes);
   // The lens changes the program, not the numbers in the tables.
-  Features numbering = wanted;
   numbering.lens = false;
   const std::size_t photons = wanted.guide ? photons_for(engine) : 0;
   const bool lacks_photons = guide_photons != photons && photons > 0 && !packed;

@@ -10,7 +10,7 @@
 #include "tracer/render/path_programs.h"
 #include "tracer/render/render.h"
 
-#include <map>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -29,7 +29,8 @@ struct Tracer::State {
 
   /// Gets scene, guide and program of a picture ready. The packed scene depends on the features
   /// (numbers), which may change from picture to picture.
-  void prepare(const Camera& camera, const EngineSettings& engine);
+  void prepare(const Camera& camera, const EngineSettings& engine,
+               const std::vector<const PlaneType*>& light_planes = {});
   /// Uploads the scene; keeps what a guide will be made of.
   void take(PackedScene scene_words, const Features& numbering);
   std::vector<std::uint32_t> make_guide(std::size_t photon_count);
@@ -44,7 +45,11 @@ struct Tracer::State {
                                    int width, int height,
                                    const std::vector<const PlaneType*>& types);
   Features features(const Scene& of, const Camera& camera) const {
-    return options.full_program ? all_features() : features_of(of, camera);
+    Features own = features_of(of, camera);
+    if (!options.full_program) return own;
+    Features all = all_features();
+    all.chooser_depth = own.chooser_depth;
+    return all;
   }
   BvhQuality quality() const {
     return options.high_quality_bvh ? BvhQuality::high : BvhQuality::medium;
@@ -71,7 +76,12 @@ struct Tracer::State {
   RayCounts ray_counts;
   Kernel path_kernel;
   std::optional<DeviceScene> device_model;  ///< the scene's model alone, once that was asked for
-  std::map<std::vector<const PlaneType*>, Kernel> plane_kernels;
+  struct PlaneKernel {
+    std::vector<const PlaneType*> types;
+    std::optional<Features> features;  ///< where one of them reads materials
+    Kernel kernel;
+  };
+  std::deque<PlaneKernel> plane_kernels;
 };
 
 }  // namespace ds

@@ -126,6 +126,39 @@ TEST_F(BuildTest, DepthTracesGeometryOnly) {
   EXPECT_FALSE(fs::exists(output() / "images/box.off/0.depth.exr")) << "no longer asked for";
 }
 
+TEST_F(BuildTest, PlanesOfLightAreTracedWithThePicture) {
+  request.overrides = {R"(outputs.planes=["direct_diffuse", "EMISSION:half"])"};
+  BuildResult result = build();
+  EXPECT_EQ(result.traced_samples, k_images * 32 * 32) << "one tracing for all";
+  EXPECT_THAT(calls.traced, SizeIs(k_images));
+  EXPECT_TRUE(fs::exists(output() / "images/box.off/0.emission.exr"));
+  const auto before = contents();
+  EXPECT_EQ(build().reused, k_images);
+  // One more is traced anew and leaves all others.
+  request.overrides = {R"(outputs.planes=["direct_diffuse", "emission:half", "indirect_glossy"])"};
+  result = build();
+  EXPECT_EQ(result.traced_samples, k_images * 32 * 32);
+  EXPECT_EQ(result.developed, 0U);
+  EXPECT_THAT(calls.planes, IsEmpty());
+  for (const auto& [file, bytes] : contents())
+    if (before.contains(file) && file.starts_with("images/")) {
+      EXPECT_EQ(before.at(file), bytes) << file;
+    }
+  // The picture by itself, and planes of light without one.
+  fs::remove_all(output());
+  request.overrides = {"outputs.image=false", "outputs.mask=false",
+                       R"(outputs.planes=["direct_diffuse"])"};
+  result = build();
+  EXPECT_EQ(result.traced_samples, k_images * 32 * 32);
+  EXPECT_EQ(contents().size(), k_images + 3);
+}
+
+TEST_F(BuildTest, ByFastArithmeticThePictureIsTracedApart) {
+  request.overrides = {"engine.math=fast", R"(outputs.planes=["direct_diffuse"])"};
+  EXPECT_EQ(build().traced_samples, 2 * k_images * 32 * 32);
+  EXPECT_EQ(build().reused, k_images);
+}
+
 TEST_F(BuildTest, WithoutKeptFilmsAToneMapTracesAgain) {
   request.overrides = {"outputs.keep_film=false"};
   build();

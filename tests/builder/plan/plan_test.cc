@@ -83,6 +83,40 @@ TEST_F(PlanTest, AMovedMeshOfAnEnvironmentMovesItsMasks) {
   }
 }
 
+/// Kinds of the files that are to be made.
+std::set<std::string> kinds_to_make(const Plan& plan) {
+  std::set<std::string> kinds;
+  for (const PlannedImage& image : plan.images)
+    for (const PlannedFile& file : image.files)
+      if (file.state == FileState::to_make) kinds.insert(file.output.kind);
+  return kinds;
+}
+
+TEST_F(PlanTest, APlaneOfLightGoesStaleWithItsPictureAndColoursWithMaterialsAlone) {
+  const std::string planes = R"(outputs.planes=["uv", "albedo", "emission", "direct_diffuse"])";
+  request.overrides = {planes};
+  build();
+  EXPECT_THAT(kinds_to_make(plan()), IsEmpty());
+  request.overrides = {planes, "engine.spp=2"};
+  EXPECT_THAT(kinds_to_make(plan()), ElementsAre("direct_diffuse", "emission", "image"));
+  request.overrides = {planes, "outputs.tone_map=linear"};
+  EXPECT_THAT(kinds_to_make(plan()), ElementsAre("image"));
+  request.overrides = {R"(outputs.planes=["albedo", "emission", "indirect_glossy"])"};
+  EXPECT_THAT(kinds_to_make(plan()), ElementsAre("indirect_glossy"));
+  request.overrides = {planes};
+  edit("environments/floor/environment.scn", "sky.color = 1.0", "sky.color = 0.5");
+  EXPECT_THAT(kinds_to_make(plan()), ElementsAre("direct_diffuse", "emission", "image"));
+  edit("environments/floor/environment.scn", "floor.kd = 0.5", "floor.kd = 0.4");
+  EXPECT_THAT(kinds_to_make(plan()), ElementsAre("albedo", "direct_diffuse", "emission", "image"));
+  edit("environments/floor/environment.scn", "sky.color = 0.5", "sky.color = 1.0");
+  edit("environments/floor/environment.scn", "floor.kd = 0.4", "floor.kd = 0.5");
+  EXPECT_THAT(kinds_to_make(plan()), IsEmpty());
+  edit("materials/red.mat", "kd = 0.7 0.1 0.1", "kd = 0.75 0.1 0.1");
+  EXPECT_THAT(kinds_to_make(plan()), ElementsAre("albedo", "direct_diffuse", "emission", "image"));
+  for (const PlannedImage& image : plan().images)
+    EXPECT_EQ(image.trace_light, image.stale()) << image.spec.id;
+}
+
 TEST_F(PlanTest, MissingAndChangedFilesAreSeen) {
   build();
   std::filesystem::remove(output() / "images/box.off/1.png");

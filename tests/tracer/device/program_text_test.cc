@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <regex>
 #include <set>
 #include <span>
@@ -31,6 +32,13 @@ Scene scene_of(const std::vector<std::string_view>& materials) {
 
 std::string text_of(const Scene& scene, const Camera& camera = {}) {
   return program_tokens(path_program_text(features_of(scene, camera)));
+}
+
+std::size_t count_of(std::string_view text, std::string_view part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1))
+    ++count;
+  return count;
 }
 
 TEST(ProgramText, HoldsNoMaterialThatTheSceneDoesNotShow) {
@@ -86,25 +94,37 @@ TEST(ProgramText, EqualFeaturesMakeEqualTexts) {
   EXPECT_EQ(text_of(moved), text);
 }
 
-std::size_t count_of(std::string_view text, std::string_view part) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1))
-    ++count;
-  return count;
-}
-
 std::string all_planes_text() {
   std::vector<const PlaneType*> all;
   for (const PlaneType& plane : plane_types())
-    all.push_back(&plane);
-  return planes_program_text(all);
+    if (!is_of_light(plane)) all.push_back(&plane);
+  return planes_program_text(all, all_features());
+}
+
+TEST(ProgramText, HooksAreInNoProgramThatDoesNotAskForThem) {
+  const Features plain = features_of(scene_of({"matte", "glossy2", "mix"}), {});
+  const std::string text = program_tokens(path_program_text(plain));
+  EXPECT_EQ(text.find("DS_HOOK"), std::string::npos);
+  for (const char* word : {"_albedo(", "_second(", "_diffuse(", "contribute(", "light_film"})
+    EXPECT_EQ(text.find(word), std::string::npos) << word;
+  // What they leave is the program itself, in whole blocks.
+  EXPECT_EQ(count_of(text, "#if"), count_of(text, "#endif"));
+  const std::array planes{&plane_type("direct_glossy")};
+  const std::string lit = program_tokens(path_program_text(with_light_planes(plain, planes)));
+  for (const char* word : {"_diffuse(", "contribute(", "light_film", "direct_glossy_takes("})
+    EXPECT_NE(lit.find(word), std::string::npos) << word;
+  for (const char* word : {"_albedo(", "_second(", "emission_takes(", "direct_diffuse_takes("})
+    EXPECT_EQ(lit.find(word), std::string::npos) << word;
 }
 
 TEST(ProgramText, EveryFileStandsInItOnce) {
-  const std::string text = path_program_text(all_features());
+  Features features = all_features();
+  features.light_planes = {"emission"};
+  const std::string text = path_program_text(features);
   for (const EmbeddedFile& file : std::span(k_embedded_files, k_embedded_file_count)) {
     // The first line of code of each file that is part of the whole program.
     if (std::string_view(file.path).ends_with("first_hit.cl") ||
+        std::string_view(file.path).ends_with("kernels/albedo.h") ||
         std::string_view(file.path).find("/plane") != std::string_view::npos ||
         std::string_view(file.path).ends_with("rays.cl"))
       continue;

@@ -52,6 +52,12 @@ std::vector<Case> all() {
                    [](const float* p, Viewer viewer, real2 u, real2 lobe) {                   \
                      return prefix##_sample(DS_PREPARED(prefix, p, viewer), viewer, u, lobe); \
                    },                                                                         \
+                   [](const float* p, Viewer viewer, real3 wi) {                              \
+                     return prefix##_diffuse(DS_PREPARED(prefix, p, viewer), viewer, wi);     \
+                   },                                                                         \
+                   [](const float* p, Viewer viewer) {                                        \
+                     return prefix##_albedo(DS_PREPARED(prefix, p, viewer), viewer);          \
+                   },                                                                         \
                    &material_types()[cases.size()]});
   DS_ALL_MATERIALS(DS_CASE)
 #undef DS_CASE

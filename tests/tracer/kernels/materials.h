@@ -17,6 +17,9 @@ struct Case {
   kernels::BsdfValue (*evaluate)(const float* p, kernels::Viewer viewer, kernels::real3 wi);
   kernels::BsdfSample (*sample)(const float* p, kernels::Viewer viewer, kernels::real2 u,
                                 kernels::real2 lobe);
+  kernels::real3 (*diffuse)(const float* p, kernels::Viewer viewer, kernels::real3 wi);
+  /// For the viewer along the normal.
+  kernels::real3 (*albedo)(const float* p, kernels::Viewer viewer);
   const NodeType* type;
 };
 /// How GoogleTest prints one.

@@ -16,6 +16,7 @@
 #define DS_CHOOSERS(X) X(mix, 3)
 #define DS_FIRST_CHOOSER 3
 #define DS_MATERIAL_INPUTS 8
+#define DS_CHOOSER_DEPTH 2
 
 #if defined(__GNUC__)  // as all_nodes.h
 #  pragma GCC diagnostic push
@@ -26,6 +27,8 @@
 // clang-format off
 namespace ds::DS_KERNELS {
 #include "tracer/kernels/shade.h"
+#include "tracer/kernels/albedo.h"
+#include "tracer/kernels/first_lobe.h"
 }  // namespace ds::DS_KERNELS
 // clang-format on
 #if defined(__GNUC__)
@@ -69,6 +72,12 @@ class MixOnHost {
     return m;
   }
 
+  real3 albedo(Viewer viewer) const {
+    Surface s{};
+    s.outside = viewer.outside;
+    return surface_albedo({words_.data(), nullptr, nullptr, k_row}, natural{k_outer}, &s);
+  }
+
  private:
   static constexpr uint k_row = k_material_head + DS_MATERIAL_INPUTS;
   enum : uint { k_metal, k_matte, k_mirror, k_inner, k_outer };
@@ -102,6 +111,16 @@ inline BsdfValue mix_evaluate(const real* p, Viewer viewer, real3 wi) {
     mean.pdf += v.pdf * share;
   }
   return mean;
+}
+
+/// As mix_evaluate.
+inline real3 mix_diffuse(const real* p, Viewer viewer, real3 wi) {
+  const real share = clamp01(p[0]) * (1 - clamp01(p[1]));  // of matte
+  return scale(matte_evaluate(p + 10, viewer, wi).value, share);
+}
+
+inline real3 mix_albedo(const real* p, Viewer viewer) {
+  return MixOnHost(p).albedo(viewer);
 }
 
 /// Weight and pdf are those of the part that lobe.x led to, as in the tracer.

@@ -39,3 +39,18 @@ DS_FN BsdfSample glass_sample(const real* p, Viewer viewer, real2 u, real2 lobe)
   s.valid = s.specular = all_lanes();
   return s;
 }
+
+#ifdef DS_HOOK_ALBEDO
+DS_FN real3 glass_albedo(const real* p, Viewer viewer) {
+  real cos_t;
+  const real reflectance =
+      dielectric_fresnel(p[glass_interiorior] / p[glass_exteriorior], (real)(1.0f), &cos_t);
+  return lerp3(input3(p, glass_kt), input3(p, glass_kr), reflectance);
+}
+#endif
+
+#ifdef DS_HOOK_LIGHT_PLANES
+DS_FN real3 glass_diffuse(const real* p, Viewer viewer, real3 wi) {
+  return splat((real)(0.0f));
+}
+#endif

@@ -192,3 +192,26 @@ DS_FN BsdfSample glossy2_sample(const real* p, Viewer viewer, real2 u, real2 lob
   s.weight = scale(v.value, 1.0f / greater(v.pdf, (real)(1e-20f)));
   return s;
 }
+
+#ifdef DS_HOOK_ALBEDO
+DS_FN real3 glossy2_albedo(const real* p, Viewer viewer) {
+  const real3 kd = input3(p, glossy2_kd);
+  const real3 passed = input3(p + glossy2_end, glossy2_passed_out);
+  // Gauss's rule of two nodes for the cosine by which the light leaves.
+  const real3 left =
+      lerp3(glossy2_absorption(p, viewer.wo.z, (real)(0.355051026f)),
+            glossy2_absorption(p, viewer.wo.z, (real)(0.844948974f)), (real)(0.636082763f));
+  const real3 coated = add(sub(splat((real)(1.0f)), passed), mul(mul(kd, passed), left));
+  return choose(glossy2_is_bare(p, viewer), kd, coated);
+}
+#endif
+
+#ifdef DS_HOOK_LIGHT_PLANES
+DS_FN real3 glossy2_diffuse(const real* p, Viewer viewer, real3 wi) {
+  const mask above = wi.z > 0.0f;
+  const real3 safe_wi = choose(above, wi, viewer.wo);
+  const real3 bare = scale(input3(p, glossy2_kd), safe_wi.z * DS_INV_PI);
+  const real3 base = glossy2_base(p, glossy2_coat(p), viewer.wo, safe_wi);
+  return choose(above, choose(glossy2_is_bare(p, viewer), bare, base), splat((real)(0.0f)));
+}
+#endif

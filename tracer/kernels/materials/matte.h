@@ -28,3 +28,15 @@ DS_FN BsdfSample matte_sample(const real* p, Viewer viewer, real2 u, real2 lobe)
   s.valid = all_lanes();
   return s;
 }
+
+#ifdef DS_HOOK_ALBEDO
+DS_FN real3 matte_albedo(const real* p, Viewer viewer) {
+  return input3(p, matte_kd);
+}
+#endif
+
+#ifdef DS_HOOK_LIGHT_PLANES
+DS_FN real3 matte_diffuse(const real* p, Viewer viewer, real3 wi) {
+  return matte_evaluate(p, viewer, wi).value;
+}
+#endif

@@ -97,3 +97,29 @@ DS_FN BsdfSample metal2_sample(const real* p, Viewer viewer, real2 u, real2 lobe
   s.glossy = all_lanes();
   return s;
 }
+
+#ifdef DS_HOOK_ALBEDO
+/// Cosine of a facet's angle to light along the normal, `u` being spread as its facets are: those above
+/// 1 / (1 + alpha^2) send it down.
+DS_FN real metal2_facet_cosine(real alpha2, real u) {
+  return 1.0f / sqrt(fma(alpha2, u / (1.0f - u), (real)(1.0f)));
+}
+
+DS_FN real3 metal2_albedo(const real* p, Viewer viewer) {
+  const Roughness r = roughness_of(p[metal2_uroughness], p[metal2_vroughness]);
+  const real alpha2 = r.x * r.y;
+  const real most = 1.0f / (1.0f + alpha2);
+  // Gauss's rule of two nodes over the facets that send it up.
+  const real3 once =
+      lerp3(metal2_fresnel(p, metal2_facet_cosine(alpha2, 0.211324865f * most)),
+            metal2_fresnel(p, metal2_facet_cosine(alpha2, 0.788675135f * most)), (real)(0.5f));
+  const real again = (p + metal2_end)[metal2_again];
+  return add_scaled(scale(once, 1.0f - again), input3(p + metal2_end, metal2_again_fresnel), again);
+}
+#endif
+
+#ifdef DS_HOOK_LIGHT_PLANES
+DS_FN real3 metal2_diffuse(const real* p, Viewer viewer, real3 wi) {
+  return splat((real)(0.0f));
+}
+#endif

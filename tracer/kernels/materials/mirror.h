@@ -23,3 +23,15 @@ DS_FN BsdfSample mirror_sample(const real* p, Viewer viewer, real2 u, real2 lobe
   s.valid = s.specular = all_lanes();
   return s;
 }
+
+#ifdef DS_HOOK_ALBEDO
+DS_FN real3 mirror_albedo(const real* p, Viewer viewer) {
+  return input3(p, mirror_kr);
+}
+#endif
+
+#ifdef DS_HOOK_LIGHT_PLANES
+DS_FN real3 mirror_diffuse(const real* p, Viewer viewer, real3 wi) {
+  return splat((real)(0.0f));
+}
+#endif

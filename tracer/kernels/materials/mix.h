@@ -21,3 +21,9 @@ DS_FN natural mix_child(const real* p, mask outside, mask here, real* choice) {
       here, lesser((*choice - low) / greater(width, (real)(1e-10f)), (real)(0.99999994f)), *choice);
   return choose_natural(second, (natural)(1u), (natural)(0u));
 }
+
+#ifdef DS_HOOK_ALBEDO
+DS_FN real mix_second(const real* p, mask outside) {
+  return clamp01(p[mix_amount]);
+}
+#endif

@@ -121,3 +121,18 @@ DS_FN BsdfSample roughglass_sample(const real* p, Viewer viewer, real2 u, real2 
                  roughglass_refracted(p, r, eta, wo, s.wi, h).pdf);
   return s;
 }
+
+#ifdef DS_HOOK_ALBEDO
+DS_FN real3 roughglass_albedo(const real* p, Viewer viewer) {
+  // Of its facets; what several of them would lose does not count.
+  real cos_t;
+  const real reflectance = dielectric_fresnel(roughglass_eta(p, viewer), (real)(1.0f), &cos_t);
+  return lerp3(input3(p, roughglass_kt), input3(p, roughglass_kr), reflectance);
+}
+#endif
+
+#ifdef DS_HOOK_LIGHT_PLANES
+DS_FN real3 roughglass_diffuse(const real* p, Viewer viewer, real3 wi) {
+  return splat((real)(0.0f));
+}
+#endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every plane that asks no light, for the host: X(name). A program gets those it is asked for; this
-// file is in none, so a new line here makes no plane stale.
+// Every plane, for the host: X(name). A program gets those it is asked for; this file is in none, so
+// a new line here makes no plane stale.
 #pragma once
 
 #define DS_ALL_PLANES(X) \
@@ -13,4 +13,11 @@
   X(shading_normal)      \
   X(uv)                  \
   X(object_id)           \
-  X(material_id)
+  X(material_id)         \
+  X(albedo)              \
+  X(emission)            \
+  X(direct_diffuse)      \
+  X(direct_glossy)       \
+  X(indirect_diffuse)    \
+  X(indirect_glossy)     \
+  X(indirect_specular)
