@@ -7,29 +7,22 @@
 //
 // Prints one JSON object: per kind of ray the Mrays/s of every repeat of both, and the share of
 // rays on which both name the same triangle (they differ in ties and along edges).
+#include "tests/bench/embree_tracer.h"
 #include "tests/bench/ray_scene.h"
 #include "tracer/accel/bvh.h"
 #include "tracer/base/error.h"
 #include "tracer/device/opencl.h"
 #include "tracer/device/program_text.h"
 
-#include <embree3/rtcore.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <chrono>
 #include <cmath>
 #include <functional>
 #include <span>
 #include <string>
-#include <thread>
-
-#if defined(__SSE__)
-#  include <pmmintrin.h>
-#  include <xmmintrin.h>
-#endif
 
 namespace ds {
 namespace {
@@ -41,86 +34,6 @@ constexpr std::size_t k_local_size = 8;
 constexpr std::size_t k_lanes = 16;
 /// Each timing traces its rays this often, so that it lasts a tenth of a second and more.
 constexpr int k_rounds = 10;
-
-/// Embree's side: one rtcIntersect1 a ray, chunks dealt out to as many threads as the machine has.
-class EmbreeTracer {
- public:
-  explicit EmbreeTracer(const std::vector<Corners>& triangles) {
-    device_ = rtcNewDevice(nullptr);
-    if (device_ == nullptr) fail(ErrorKind::device, "embree: no device could be made");
-    scene_ = rtcNewScene(device_);
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* corners = static_cast<Vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                                               RTC_FORMAT_FLOAT3, sizeof(Vec3),
-                                                               triangles.size() * 3));
-    auto* indices = static_cast<std::uint32_t*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                3 * sizeof(std::uint32_t), triangles.size()));
-    if (corners == nullptr || indices == nullptr)
-      fail(ErrorKind::device, "embree: no memory for {} triangles", triangles.size());
-    for (std::size_t i = 0; i < triangles.size(); ++i)
-      for (std::size_t k = 0; k < 3; ++k) {
-        corners[i * 3 + k] = triangles[i][k];
-        indices[i * 3 + k] = static_cast<std::uint32_t>(i * 3 + k);
-      }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene_);
-    if (rtcGetDeviceError(device_) != RTC_ERROR_NONE)
-      fail(ErrorKind::device, "embree: the scene could not be built");
-  }
-  ~EmbreeTracer() {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
-  EmbreeTracer(const EmbreeTracer&) = delete;
-  EmbreeTracer& operator=(const EmbreeTracer&) = delete;
-
-  unsigned threads() const { return std::max(1u, std::thread::hardware_concurrency()); }
-
-  void trace(const std::vector<RayWords>& rays, std::vector<Met>& met) const {
-    constexpr std::size_t k_chunk = 2048;
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-      flush_denormals();
-      for (;;) {
-        const std::size_t begin = next.fetch_add(k_chunk);
-        if (begin >= rays.size()) return;
-        trace_chunk(rays, met, begin, std::min(rays.size(), begin + k_chunk));
-      }
-    };
-    std::vector<std::jthread> others;
-    for (unsigned i = 1; i < threads(); ++i)
-      others.emplace_back(work);
-    work();
-  }
-
- private:
-  /// As Embree's manual asks for its full speed.
-  static void flush_denormals() {
-#if defined(__SSE__)
-    _mm_setcsr(_mm_getcsr() | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON);
-#endif
-  }
-
-  void trace_chunk(const std::vector<RayWords>& rays, std::vector<Met>& met, std::size_t begin,
-                   std::size_t end) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    for (std::size_t i = begin; i < end; ++i) {
-      const RayWords& r = rays[i];
-      RTCRayHit hit{};
-      hit.ray = {r[0], r[1], r[2], 0, r[3], r[4], r[5], 0, r[6], ~0u, 0, 0};
-      hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-      rtcIntersect1(scene_, &context, &hit);
-      met[i] = {hit.ray.tfar, hit.hit.primID, hit.hit.geomID != RTC_INVALID_GEOMETRY_ID};
-    }
-  }
-
-  RTCDevice device_ = nullptr;
-  RTCScene scene_ = nullptr;
-};
 
 /// dsbuild's side: the kernel trace_batches over rays in device memory.
 class KernelTracer {
