@@ -1,107 +1,161 @@
 // SPDX-License-Identifier: Apache-2.0
-// The planes of a picture that ask no light: one ray a pixel, through its centre and the pinhole.
-// DS_PLANES(X) is the list of those asked for, X(name, numbers a pixel of those before it)
-// (device/plane_types.cc writes it).
+// The planes of a picture that ask no light: one ray a pixel, through its centre and the pinhole, the
+// rays of DS_LANES neighbours together. DS_PLANES(X) is the list of those asked for, X(name, numbers a
+// pixel of those before it) (device/plane_types.cc writes it).
 #include "tracer/kernels/hits.cl"
 #include "tracer/kernels/plane.h"
-#include "tracer/kernels/ties.cl"
+#include "tracer/kernels/tied_lanes.cl"
 #include "tracer/kernels/view_data.h"
 #ifdef DS_HOOK_ALBEDO
 #  include "tracer/kernels/albedo.h"
 #endif
 
-DS_FN bool is_camera_invisible(DS_GLOBAL float* triangles, uint id) {
-  const uint flags = as_uint(triangles[id * k_triangle_words + k_triangle_flags]);
-  return (flags & k_flag_camera_invisible) != 0;
+/// A word of the triangles' rows; of the first triangle's where the lane met none.
+DS_FN natural triangle_word(DS_GLOBAL float* triangles, natural id, uint word) {
+  const natural row = choose_natural(id == k_none, (natural)(0u), id);
+  return load_natural(triangles, row * (uint)k_triangle_words + word);
 }
 
-DS_FN Hit camera_hit(const __global float8* nodes, const __global float8* leaves,
-                     DS_GLOBAL float* triangles, Ray ray) {
-  const Hit hit = nearest_hit(nodes, leaves, ray);
-  if (hit.id == k_none || !may_yield(tie_flags(triangles, hit.id), true)) return hit;
-  return top_hit(nodes, leaves, triangles, ray, hit, true);
+/// trace_lanes without any shadow rays.
+#if DS_LANES == 1
+DS_FN void nearest_lanes(const __global float8* nodes, const __global float8* leaves,
+                         const LaneRays* rays, BatchHits* found) {
+  LaneRays none = *rays;
+  none.wanted = (mask)(0);
+  trace_lanes(nodes, leaves, rays, &none, found);
 }
-
-/// The ray through pixel i. Its direction's part along the viewing axis is 1, so a hit's distance in
-/// lengths of it is the planar depth.
-DS_FN Ray pixel_ray(const __global ViewData* view, uint i) {
-  const float sx = 2.0f * ((float)(i % view->width) + 0.5f) / (float)view->width - 1.0f;
-  const float sy = 1.0f - 2.0f * ((float)(i / view->width) + 0.5f) / (float)view->height;
-  Ray ray;
-  for (int axis = 0; axis < 3; ++axis) {
-    ray.origin[axis] =
-        fma(sx, view->start_right[axis], fma(sy, view->start_up[axis], view->start[axis]));
-    ray.direction[axis] = fma(sx, view->right[axis], fma(sy, view->up[axis], view->forward[axis]));
+#else
+DS_FN void nearest_lanes(const __global float8* nodes, const __global float8* leaves,
+                         const LaneRays* rays, BatchHits* found) {
+  Batch b;
+  Counts n = {0, 0, 0};
+  n.at_node = add_rays(&b, 0, 0, nodes, rays);
+  while ((n.at_node | n.at_leaf | n.climbing) != 0) {
+    n = step_nodes(&b, n, nodes);
+    n = step_leaves(&b, n, leaves);
+    n = step_climbing(&b, n, nodes);
   }
-  ray.t_max = 1e30f;
-  return ray;
+  *(real*)found->t = *(const real*)&b.t[0];
+  *(natural*)found->id = *(const natural*)&b.id[0];
+}
+#endif
+
+/// What the wanted rays meet first. Those that the camera does not see are there still.
+DS_FN void camera_hits(const __global float8* nodes, const __global float8* leaves,
+                       DS_GLOBAL float* triangles, const LaneRays* rays, BatchHits* found) {
+  nearest_lanes(nodes, leaves, rays, found);
+  const natural id = *(const natural*)found->id;
+  const natural flags = triangle_word(triangles, id, k_triangle_flags);
+  // As may_yield of ties.cl.
+  const mask unseen = (flags & (uint)k_flag_camera_invisible) != 0u;
+  const mask asks =
+      rays->wanted & (id != k_none) &
+      (((flags & (uint)k_flag_covered) != 0u) | (unseen & ((flags & (uint)k_flags_tied) != 0u)));
+  if (any_lane(asks)) top_hits(nodes, leaves, triangles, rays, asks, (mask)(-1), found);
+}
+
+DS_FN real along(const float* start, const float* right, const float* up, int axis, real sx,
+                 real sy) {
+  return fma(sx, (real)(right[axis]), fma(sy, (real)(up[axis]), (real)(start[axis])));
+}
+
+/// The rays through pixels i. Their directions' part along the viewing axis is 1, so a hit's distance
+/// in lengths of it is the planar depth.
+DS_FN LaneRays pixel_rays(const ViewData* view, natural i, mask wanted) {
+  const real sx = 2.0f * (to_real(i % view->width) + 0.5f) / (float)view->width - 1.0f;
+  const real sy = 1.0f - 2.0f * (to_real(i / view->width) + 0.5f) / (float)view->height;
+  LaneRays rays;
+  rays.origin = vec(along(view->start, view->start_right, view->start_up, 0, sx, sy),
+                    along(view->start, view->start_right, view->start_up, 1, sx, sy),
+                    along(view->start, view->start_right, view->start_up, 2, sx, sy));
+  rays.direction = vec(along(view->forward, view->right, view->up, 0, sx, sy),
+                       along(view->forward, view->right, view->up, 1, sx, sy),
+                       along(view->forward, view->right, view->up, 2, sx, sy));
+  rays.t_max = (real)(1e30f);
+  rays.wanted = wanted;
+  return rays;
+}
+
+/// Number k of `width` of the pixels from `first` on, up to `end`.
+DS_FN void store_number(__global float* plane, uint first, uint end, uint width, uint k,
+                        real number) {
+  float lanes[DS_LANES] __attribute__((aligned(64)));
+  *(real*)lanes = number;
+  const uint count = min(end - first, (uint)DS_LANES);
+  for (uint lane = 0; lane < count; ++lane)
+    plane[(first + lane) * width + k] = lanes[lane];
 }
 
 /// planes: all numbers of the first plane, pixel by pixel, then those of the next. material_ids: by
 /// the material's row.
 __kernel void trace_planes(
     const __global float8* restrict nodes, const __global float8* restrict leaves,
-    const __global float* restrict triangles, const __global uint* restrict material_ids,
-    const __global ViewData* restrict view, __global float* restrict planes
+    const __global float* restrict triangles, const __global float* restrict material_ids,
+    const __global ViewData* restrict view_data, __global float* restrict planes
 #ifdef DS_HOOK_ALBEDO
     ,
     const __global float* restrict materials, const __global float* restrict programs,
     const __global float* restrict tables, const __global SceneData* restrict scene_data
 #endif
 ) {
-  const uint i = get_global_id(0);
-  const uint pixels = view->width * view->height;
-  if (i >= pixels) return;
-  Ray ray = pixel_ray(view, i);
-  Hit hit = camera_hit(nodes, leaves, triangles, ray);
-  float passed = 0.0f;
-  while (hit.id != k_none && is_camera_invisible(triangles, hit.id)) {
+  const ViewData view = *view_data;
+  const uint first = (uint)get_global_id(0) * (uint)DS_LANES;
+  const uint pixels = view.width * view.height;
+  if (first >= pixels) return;
+  const natural i = DS_LANE_NUMBERS + first;
+  LaneRays rays = pixel_rays(&view, i, i < pixels);
+  BatchHits found;
+  camera_hits(nodes, leaves, triangles, &rays, &found);
+  real t = *(const real*)found.t;
+  natural id = *(const natural*)found.id;
+  real passed = (real)(0.0f);
+  for (;;) {
+    const natural flags = triangle_word(triangles, id, k_triangle_flags);
+    rays.wanted = rays.wanted & (id != k_none) & ((flags & (uint)k_flag_camera_invisible) != 0u);
+    if (!any_lane(rays.wanted)) break;
     // On from just behind the surface: a few ulps of all that was passed.
-    const float step = hit.t + 1e-6f * (passed + hit.t);
-    passed += step;
-    for (int axis = 0; axis < 3; ++axis)
-      ray.origin[axis] = fma(step, ray.direction[axis], ray.origin[axis]);
-    hit = camera_hit(nodes, leaves, triangles, ray);
+    const real step = t + 1e-6f * (passed + t);
+    passed = choose(rays.wanted, passed + step, passed);
+    rays.origin = choose(rays.wanted, add_scaled(rays.origin, rays.direction, step), rays.origin);
+    camera_hits(nodes, leaves, triangles, &rays, &found);
+    t = choose(rays.wanted, *(const real*)found.t, t);
+    id = choose_natural(rays.wanted, *(const natural*)found.id, id);
   }
-  const bool met = hit.id != k_none;
+  const mask met = id != k_none;
+  const real zero = (real)(0.0f);
+  const natural nothing = (natural)(0u);
   HitPoint h;
-  h.object = h.material_id = 0u;
-  h.depth = h.distance = 0.0f;
-  if (met) {
-    const real3 direction = vec(ray.direction[0], ray.direction[1], ray.direction[2]);
-    h.depth = view->start_depth + (passed + hit.t);
-    h.distance = h.depth * sqrt(dot(direction, direction));
-    h.object = as_uint(triangles[hit.id * k_triangle_words + k_triangle_object]);
+  h.depth = choose(met, view.start_depth + (passed + t), zero);
+  h.distance = h.depth * sqrt(dot(rays.direction, rays.direction));
+  h.object = choose_natural(met, triangle_word(triangles, id, k_triangle_object), nothing);
+  h.material_id = nothing;
 #ifdef DS_PLANE_MATERIAL_IDS
-    h.material_id =
-        material_ids[as_uint(triangles[hit.id * k_triangle_words + k_triangle_material])];
+  const natural material = triangle_word(triangles, id, k_triangle_material);
+  h.material_id = choose_natural(met, load_natural(material_ids, material), nothing);
 #endif
 #ifdef DS_PLANE_SURFACE
-    BatchHits found;
-    found.t[0] = hit.t;
-    found.id[0] = hit.id;
-    LaneHits hits;
-    load_triangles(triangles, &found, &hits);
-    const real3 origin = vec(ray.origin[0], ray.origin[1], ray.origin[2]);
-    h.surface = surface_of(&hits, origin, unit(direction));
+  *(natural*)found.id = id;
+  LaneHits hits;
+  load_triangles(triangles, &found, &hits);
+  h.surface = surface_of(&hits, rays.origin, unit(rays.direction));
 #endif
 #ifdef DS_HOOK_ALBEDO
-    h.surface.colors = hit.id + 1u;
-    MaterialTables t;
-    t.materials = materials;
-    t.programs = programs;
-    t.tables = tables;
-    t.material_words = scene_data->material_words;
-    h.albedo = surface_albedo(
-        t, as_uint(triangles[hit.id * k_triangle_words + k_triangle_material]), &h.surface);
+  h.surface.colors = id + 1u;
+  MaterialTables tables_of;
+  tables_of.materials = materials;
+  tables_of.programs = programs;
+  tables_of.tables = tables;
+  tables_of.material_words = scene_data->material_words;
+  h.albedo =
+      surface_albedo(tables_of, triangle_word(triangles, id, k_triangle_material), met, &h.surface);
 #endif
-  }
-#define DS_PLANE(name, before)                                                       \
-  {                                                                                  \
-    real out[name##_width];                                                          \
-    if (met) name##_at(&h, out);                                                     \
-    for (uint k = 0; k < (uint)name##_width; ++k)                                    \
-      planes[before##u * pixels + i * (uint)name##_width + k] = met ? out[k] : 0.0f; \
+#define DS_PLANE(name, before)                                                        \
+  {                                                                                   \
+    real out[name##_width];                                                           \
+    name##_at(&h, out);                                                               \
+    for (uint k = 0; k < (uint)name##_width; ++k)                                     \
+      store_number(planes + before##u * pixels, first, pixels, (uint)name##_width, k, \
+                   choose(met, out[k], zero));                                        \
   }
   DS_PLANES(DS_PLANE)
 }

@@ -54,8 +54,9 @@ Kernel& Tracer::State::plane_kernel(const std::vector<const PlaneType*>& types) 
   if (read_materials(types)) features = packed_for;
   for (PlaneKernel& known : plane_kernels)
     if (known.types == types && known.features == features) return known.kernel;
-  const Program program = device.build(planes_program_text(types, features.value_or(Features{})),
-                                       k_strict_options, options.cache_folder);
+  const Program program = device.build(
+      planes_program_text(types, features.value_or(Features{})),
+      fmt::format("{} -DDS_LANES={}", k_strict_options, plane_lanes()), options.cache_folder);
   return plane_kernels.emplace_back(types, features, device.kernel(program, "trace_planes")).kernel;
 }
 
@@ -81,7 +82,9 @@ std::vector<Plane> Tracer::State::launch_planes(const DeviceScene& of, const Sce
   if (read_materials(types))
     for (const Buffer* b : {&of.materials, &of.programs, &of.tables, &of.data})
       kernel.set(argument++, *b);
-  device.run(kernel, 0, round_up(pixels, local_size), local_size);
+  const auto pixels_an_item = static_cast<std::size_t>(plane_lanes());
+  device.run(kernel, 0, round_up((pixels + pixels_an_item - 1) / pixels_an_item, local_size),
+             local_size);
   if (options.count_rays) ray_counts.geometry += pixels;
   std::vector<float> all(pixels * static_cast<std::size_t>(numbers));
   device.read(planes, std::as_writable_bytes(std::span(all)));

@@ -39,6 +39,9 @@ struct Tracer::State {
   /// Gives the path kernel a row of counts for each work-item, as its last argument.
   void start_counting(unsigned argument, std::size_t items);
   void add_counts();
+  /// Pixels that a work-item takes: with 16 rays under way on a CPU, as many as a path tracer's 8 lanes
+  /// have with their shadow rays, none waits for its next node.
+  int plane_lanes() const { return options.lanes == 0 && device.info().is_cpu ? 16 : lanes; }
   Kernel& plane_kernel(const std::vector<const PlaneType*>& types);
   /// One launch for planes of one scene.
   std::vector<Plane> launch_planes(const DeviceScene& of, const Scene& seen, const Camera& camera,

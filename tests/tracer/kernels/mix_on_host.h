@@ -75,7 +75,8 @@ class MixOnHost {
   real3 albedo(Viewer viewer) const {
     Surface s{};
     s.outside = viewer.outside;
-    return surface_albedo({words_.data(), nullptr, nullptr, k_row}, natural{k_outer}, &s);
+    return surface_albedo({words_.data(), nullptr, nullptr, k_row}, natural{k_outer}, all_lanes(),
+                          &s);
   }
 
  private:
