@@ -59,7 +59,7 @@ std::string key_text(const KeySpec& key) {
   std::string help = wanted_text(key);
   if (!key.unit.empty()) help += fmt::format(" ({})", key.unit);
   if (!key.default_value.empty()) help += fmt::format(" [{}]", key.default_value);
-  help += fmt::format(": {}", key.help);
+  help += ": " + help_of(key);
   if (!key.only_with.empty()) help += fmt::format(". Only with {}", key.only_with);
   return help;
 }

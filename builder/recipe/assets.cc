@@ -5,6 +5,7 @@
 #include "manifests/json_text.h"
 #include "tracer/base/log.h"
 #include "tracer/base/nearest.h"
+#include "tracer/scene/mesh_formats.h"
 
 #include <algorithm>
 #include <cctype>
@@ -24,7 +25,7 @@ namespace fs = std::filesystem;
 struct AssetKind {
   std::string_view section;
   std::string_view wanted;            ///< of an element of `files`
-  std::string_view wanted_in_folder;  ///< of a folder's content
+  std::string (*wanted_in_folder)();  ///< of a folder's content
   bool (*is_one)(const fs::path&);    ///< whether a path named in `files` can be one
   bool (*belongs)(const fs::path&);   ///< whether an entry of `dir` is one
   std::string (*name)(const fs::path&);
@@ -35,19 +36,11 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, error);
 }
 
-bool has_ending(const fs::path& path, std::initializer_list<std::string_view> endings) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return std::find(endings.begin(), endings.end(), ending) != endings.end();
-}
-
 bool is_model(const fs::path& path) {
-  return has_ending(path, {".ply", ".off"}) && is_file(path);
+  return has_mesh_ending(path) && is_file(path);
 }
 bool is_material(const fs::path& path) {
-  return has_ending(path, {".mat"}) && is_file(path);
+  return has_ending(path, ".mat") && is_file(path);
 }
 bool is_environment(const fs::path& path) {
   return is_file(path / "environment.scn");
@@ -56,15 +49,17 @@ std::string file_name(const fs::path& path) {
   return path.filename().string();
 }
 
-constexpr AssetKind k_models{"models", "a file", ".ply or .off file", is_file, is_model, file_name};
-constexpr AssetKind k_materials{"materials", "a file",    ".mat file",
+constexpr AssetKind k_models{"models", "a file", [] { return mesh_endings_text() + " file"; },
+                             is_file,  is_model, file_name};
+constexpr AssetKind k_materials{"materials", "a file",    [] { return std::string(".mat file"); },
                                 is_file,     is_material, material_name};
-constexpr AssetKind k_environments{"environments",
-                                   "a folder that holds an environment.scn",
-                                   "folder that holds an environment.scn",
-                                   is_environment,
-                                   is_environment,
-                                   environment_name};
+constexpr AssetKind k_environments{
+    "environments",
+    "a folder that holds an environment.scn",
+    [] { return std::string("folder that holds an environment.scn"); },
+    is_environment,
+    is_environment,
+    environment_name};
 
 bool fits_manifest(const std::string& name) {
   const bool odd = std::any_of(name.begin(), name.end(), [](char c) {
@@ -183,8 +178,9 @@ std::string unused_text(const Listing& listing, const AssetKind& kind) {
       count += files;
       endings.push_back(fmt::format("{} {}", files, ending.empty() ? "without" : ending));
     }
-    parts.push_back(fmt::format("{} file{} of other endings ({}); .ply and .off are read", count,
-                                count == 1 ? "" : "s", fmt::join(endings, ", ")));
+    parts.push_back(fmt::format("{} file{} of other endings ({}); {} are read", count,
+                                count == 1 ? "" : "s", fmt::join(endings, ", "),
+                                mesh_endings_text(" and ")));
   }
   if (const std::size_t count = listing.hidden.size(); count > 0)
     parts.push_back(fmt::format("{} whose name{} with a dot, which hides {} ({}{})", count,
@@ -267,9 +263,10 @@ class Finder {
                          fmt::format("must be a folder, found {}: {}{}", folder.string(),
                                      error.message(), similar_name(folder)));
     } else if (listing.found.empty()) {
-      settings_.complain(dir, dir_key_,
-                         fmt::format("must hold a {}, found none in {}{}{}", kind_.wanted_in_folder,
-                                     folder.string(), unused.empty() ? "" : ", but ", unused));
+      settings_.complain(
+          dir, dir_key_,
+          fmt::format("must hold a {}, found none in {}{}{}", kind_.wanted_in_folder(),
+                      folder.string(), unused.empty() ? "" : ", but ", unused));
     } else if (!unused.empty()) {
       warn(fmt::format("{}: not used of {}: {}", dir_key_, folder.string(), unused));
     }

@@ -8,8 +8,8 @@
 
 namespace ds {
 
-/// Model files: models.files, or the .ply and .off files (in any case) of models.dir but for hidden
-/// ones; sorted by file name. Folders that links lead to are looked into as others are, each folder
+/// Model files: models.files, or the files of models.dir that have a mesh format's ending (in any
+/// case) but for hidden ones; sorted by file name. Folders that links lead to are looked into as others are, each folder
 /// once. What models.dir holds besides (files of other endings, links that lead nowhere, folders
 /// with models that models.recursive would read) is counted in a warning. Every problem is a
 /// finding: neither or both keys given, nothing found, no such file, one name twice, a name that a

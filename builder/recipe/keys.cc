@@ -41,9 +41,10 @@ constexpr std::array k_keys = {
     KeySpec{"dataset.licence", manifest, text, "", "\"\"", k_any, "", "",
             "Licence of the pictures, copied into the manifest"},
 
-    KeySpec{"models.dir", images, path, "", "", k_any, "", "",
-            "Folder of models: its .ply and .off files. Either this or models.files must be given; "
-            "with --set, the one given replaces the other"},
+    KeySpec{
+        "models.dir", images, path, "", "", k_any, "", "",
+        "Folder of models: its {mesh endings} files. Either this or models.files must be given; "
+        "with --set, the one given replaces the other"},
     KeySpec{"models.files", images, path_list, "", "", k_any, "", "",
             "Model files, of any name. No two models may have one file name"},
     KeySpec{"models.recursive", images, boolean, "", "false", k_any, "", "",

@@ -50,7 +50,7 @@ struct KeySpec {
   std::string_view choices;
   std::string_view only_with;  ///< "camera.set = \"orbit\" | ..." or "engine.error != false":
                                ///< without effect, and so an error, otherwise
-  std::string_view help;
+  std::string_view help;       ///< see help_of
 
   bool has_default() const { return !default_value.empty() && default_value.front() != '('; }
 };
@@ -60,6 +60,8 @@ std::span<const KeySpec> recipe_keys();
 /// nullptr for no key of that name.
 const KeySpec* find_key(std::string_view name);
 
+/// What it does, with what stands in a table elsewhere filled in.
+std::string help_of(const KeySpec& key);
 /// "a string", "an integer in [1, 16384]", "\"y\" or \"z\"": what a value must be.
 std::string wanted_text(const KeySpec& key);
 /// only_with, taken apart: the key it asks, and the literals that it must or must not have.
@@ -77,7 +79,7 @@ std::vector<std::string_view> recipe_sections();
 /// The known name that looks most like the unknown one, or "" where none does.
 std::string_view nearest_key(std::string_view unknown);
 
-/// The reference of recipes/README.md: a Markdown table a section, and one of planes.
+/// The reference of recipes/README.md: a Markdown table a section, of mesh formats and of planes.
 std::string recipe_reference();
 
 }  // namespace ds

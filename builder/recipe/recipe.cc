@@ -9,6 +9,7 @@
 #include "manifests/concerns.h"
 #include "tracer/base/files.h"
 #include "tracer/base/nearest.h"
+#include "tracer/scene/mesh_formats.h"
 
 #include <algorithm>
 #include <array>
@@ -298,9 +299,8 @@ std::string name_from_file(const Settings& settings, const fs::path& file) {
 
 /// What a file of another kind was most likely meant for; "" for any other ending.
 std::string_view kind_of_other_file(const fs::path& file) {
+  if (has_mesh_ending(file)) return "a model, which models.dir or models.files of a recipe names";
   static constexpr std::pair<std::string_view, std::string_view> k_kinds[] = {
-      {".ply", "a model, which models.dir or models.files of a recipe names"},
-      {".off", "a model, which models.dir or models.files of a recipe names"},
       {".mat", "a material, which materials.dir or materials.files of a recipe names"},
       {".scn", "a scene, whose folder environments.dir or environments.files of a recipe names"},
       {".cla", "a class file, which classes.train or classes.test of a recipe names"}};

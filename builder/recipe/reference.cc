@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/recipe/keys.h"
 #include "builder/recipe/planes.h"
+#include "tracer/scene/mesh_formats.h"
 
 #include <fmt/format.h>
 
@@ -82,7 +83,7 @@ std::string default_cell(const KeySpec& key) {
 }
 
 std::string help_cell(const KeySpec& key) {
-  std::string cell(key.help);
+  std::string cell = help_of(key);
   if (!key.only_with.empty()) {
     const KeyCondition condition = condition_of(key);
     cell += fmt::format(". Only with `{}` {} {}", condition.key,
@@ -92,6 +93,10 @@ std::string help_cell(const KeySpec& key) {
 }
 
 }  // namespace
+
+std::string help_of(const KeySpec& key) {
+  return replace_all(std::string(key.help), "{mesh endings}", mesh_endings_text(" and "));
+}
 
 std::string wanted_text(const KeySpec& key) {
   std::string wanted(type_text(key.type));
@@ -117,7 +122,8 @@ std::string recipe_reference() {
                         type_cell(key), key.unit, default_cell(key), help_cell(key),
                         moves_text(key.moves));
   }
-  return text + "\n### Planes\n\n" + plane_reference();
+  return text + "\n### Mesh formats\n\n" + mesh_format_reference() + "\n### Planes\n\n" +
+         plane_reference();
 }
 
 }  // namespace ds

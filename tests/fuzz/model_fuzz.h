@@ -30,9 +30,9 @@ void check_mesh(const BasicMesh<Position>& mesh) {
 }
 
 /// Reads and normalises: a sound mesh or an Error(asset), nothing else.
-inline void fuzz_model(const std::string& bytes) {
+inline void fuzz_model(std::string_view bytes, const std::string& name) {
   try {
-    const Model model = parse_model(bytes, "fuzz");
+    const Model model = parse_model(bytes, name);
     check_mesh(model.mesh);
     for (const Normals normals : {Normals::smooth, Normals::flat, Normals::keep}) {
       NormaliseOptions options;

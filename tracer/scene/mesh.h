@@ -186,8 +186,8 @@ struct Model {
 /// file has them.
 enum class Winding { outwards, as_stored };
 
-/// Reads PLY or OFF by the file's first bytes (not its name), triangulates, and mends what is
-/// listed in MeshReport. The order of vertices and triangles is the file's. No -0 in the result.
+/// Reads a file of any kind there is (mesh_formats.h), whatever its name, triangulates, and mends
+/// what is listed in MeshReport. The order of vertices and triangles is the file's. No -0 in the result.
 /// Throws Error(asset) with path and line (text) or byte offset (binary) for a file that is cut
 /// off, contradicts itself, or leaves no triangle; Error(io) for one that cannot be read. Never
 /// reserves memory on the word of a header alone.

@@ -49,14 +49,6 @@ struct Polygons {
   }
 };
 
-/// The readers. `name` stands for the path in messages. Throw Error(asset).
-Polygons read_ply(std::string_view bytes, const std::string& name);
-Polygons read_off(std::string_view bytes, const std::string& name);
-
-/// Whether the first bytes are those of the format.
-bool is_ply(std::string_view bytes);
-bool is_off(std::string_view bytes);
-
 /// Triangulates, and mends what MeshReport lists. Throws Error(asset) where no triangle is left, and
 /// where indices count from 1.
 Model mend(Polygons polygons, const std::string& name, Winding winding);

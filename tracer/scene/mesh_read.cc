@@ -3,7 +3,7 @@
 #include "tracer/base/files.h"
 #include "tracer/base/text_lines.h"
 #include "tracer/scene/mesh.h"
-#include "tracer/scene/mesh_polygons.h"
+#include "tracer/scene/mesh_formats.h"
 #include "tracer/scene/mesh_text.h"
 
 namespace ds {
@@ -11,12 +11,13 @@ namespace ds {
 Model parse_model(std::string_view bytes, const std::string& name, Winding winding) {
   if (is_utf16(bytes)) fail(ErrorKind::asset, "{}: {}", name, k_utf16_message);
   bytes = without_bom(bytes);
-  if (is_ply(bytes)) return mend(read_ply(bytes, name), name, winding);
-  if (is_off(bytes)) return mend(read_off(bytes, name), name, winding);
+  for (const MeshFormat* format : mesh_formats())
+    if (format->matches(bytes, name)) return mend(format->read(bytes, name), name, winding);
   if (bytes.empty())
-    fail(ErrorKind::asset, "{}: wanted a PLY or OFF file, found an empty one", name);
-  fail(ErrorKind::asset, "{}: wanted a PLY or OFF file, found one that begins \"{}\"", name,
-       printable(bytes.substr(0, 16)));
+    fail(ErrorKind::asset, "{}: wanted a mesh file ({}), found an empty one", name,
+         mesh_format_names());
+  fail(ErrorKind::asset, "{}: wanted a mesh file ({}), found one that begins \"{}\"", name,
+       mesh_format_names(), printable(bytes.substr(0, 16)));
 }
 
 Model read_model(const std::filesystem::path& file, Winding winding) {

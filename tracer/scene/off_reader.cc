@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/error.h"
-#include "tracer/scene/mesh_polygons.h"
+#include "tracer/scene/mesh_formats.h"
 #include "tracer/scene/mesh_text.h"
 
 #include <algorithm>
@@ -263,8 +263,6 @@ bool begins_with_counts(LineCursor cursor) {
   return parse_number(cursor.rest()).size > 0;
 }
 
-}  // namespace
-
 bool is_off(std::string_view bytes) {
   LineCursor cursor("", bytes, 1, '#');
   if (!cursor.next_line()) return false;
@@ -273,8 +271,14 @@ bool is_off(std::string_view bytes) {
 }
 
 Polygons read_off(std::string_view bytes, const std::string& name) {
-  DS_ASSERT(is_off(bytes));
   return OffReader(bytes, name).read();
 }
+
+}  // namespace
+
+extern const MeshFormat off_format;
+const MeshFormat off_format{
+    "OFF", ".off", "normals, uvs and colours of vertices, colours of faces",
+    [](std::string_view bytes, const std::string&) { return is_off(bytes); }, read_off};
 
 }  // namespace ds

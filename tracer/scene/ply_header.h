@@ -43,6 +43,9 @@ struct PlyHeader {
   std::uint64_t body_line = 0;  ///< line number of the body's first line
 };
 
+/// Whether a file begins as one does.
+bool is_ply(std::string_view bytes);
+
 /// Names of elements, and of properties within one, are distinct. Throws Error(asset).
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& name);
 

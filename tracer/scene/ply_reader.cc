@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/error.h"
-#include "tracer/scene/mesh_polygons.h"
+#include "tracer/scene/mesh_formats.h"
 #include "tracer/scene/ply_header.h"
 #include "tracer/scene/ply_layout.h"
 #include "tracer/scene/ply_source.h"
@@ -225,8 +225,6 @@ Polygons read_body(Source source, const PlyHeader& header, const std::string& na
   return out;
 }
 
-}  // namespace
-
 Polygons read_ply(std::string_view bytes, const std::string& name) {
   const PlyHeader header = parse_ply_header(bytes, name);
   const auto has = [&](std::string_view wanted) {
@@ -250,5 +248,13 @@ Polygons read_ply(std::string_view bytes, const std::string& name) {
   DS_ASSERT(false);
   return {};
 }
+
+}  // namespace
+
+extern const MeshFormat ply_format;
+const MeshFormat ply_format{
+    "PLY", ".ply",
+    "normals, uvs and colours of vertices, uvs of corners, colours of faces, strips of triangles",
+    [](std::string_view bytes, const std::string&) { return is_ply(bytes); }, read_ply};
 
 }  // namespace ds

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/scene/mesh.h"
+#include "tracer/scene/mesh_formats.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/sdl_math.h"
 #include "tracer/scene/sdl_reader.h"
@@ -198,7 +199,7 @@ void read_shape(SdlNode node) {
 }
 
 SdlParameter ply_parameter() {
-  return {"ply", SdlType::file, "", "a mesh file: PLY or OFF"};
+  return {"ply", SdlType::file, "", "a mesh file: " + mesh_format_names()};
 }
 
 }  // namespace

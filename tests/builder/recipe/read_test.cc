@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/recipe/recipe.h"
 #include "tests/builder/recipe_folder.h"
+#include "tracer/scene/mesh_formats.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -276,19 +277,22 @@ TEST_F(RecipeReadTest, CountsWhatIsNotUsedOfTheModelsFolder) {
   fs::remove(folder_.path() / "models/.hidden.ply");
   folder_.add("models/LICENSE");
   EXPECT_EQ(warnings(folder_, ""), "");
-  folder_.add("models/a.obj");
-  folder_.add("models/b.obj");
-  folder_.add("models/c.STL");
+  folder_.add("models/a.blend");
+  folder_.add("models/b.blend");
+  folder_.add("models/c.FBX");
   folder_.add("models/deeper/again/vase.off");
   folder_.add("models/empty/words.txt");
   fs::create_symlink("nowhere.ply", folder_.path() / "models/gone.ply");
   EXPECT_EQ(warnings(folder_, ""),
-            "dsbuild: warning: models.dir: not used of models: 3 files of other endings (1 .STL, 2 "
-            ".obj); .ply and .off are read; 1 link that leads nowhere; 1 folder that holds models; "
-            "models.recursive = true reads it\n");
+            "dsbuild: warning: models.dir: not used of models: 3 files of other endings (1 .FBX, 2 "
+            ".blend); " +
+                mesh_endings_text(" and ") +
+                " are read; 1 link that leads nowhere; 1 folder that holds models; "
+                "models.recursive = true reads it\n");
   EXPECT_EQ(warnings(folder_, "models.recursive = true"),
-            "dsbuild: warning: models.dir: not used of models: 4 files of other endings (1 .STL, 2 "
-            ".obj, 1 .txt); .ply and .off are read; 1 link that leads nowhere\n");
+            "dsbuild: warning: models.dir: not used of models: 4 files of other endings (1 .FBX, 2 "
+            ".blend, 1 .txt); " +
+                mesh_endings_text(" and ") + " are read; 1 link that leads nowhere\n");
   const RecipeFolder other;
   other.add("deep/a/b.off");
   EXPECT_THAT(other.findings("", {"models.dir=" + (other.path() / "deep").string()}),
@@ -304,10 +308,12 @@ TEST_F(RecipeReadTest, CountsPipesAndSocketsOfAnyName) {
       "dsbuild: warning: models.dir: not used of models: 1 that is no file (a pipe, socket or "
       "device)\n");
   ASSERT_EQ(::mkfifo((folder_.path() / "models/README").c_str(), 0600), 0);
-  folder_.add("models/a.obj");
-  EXPECT_EQ(warnings(folder_, ""),
-            "dsbuild: warning: models.dir: not used of models: 1 file of other endings (1 .obj); "
-            ".ply and .off are read; 2 that are no files (a pipe, socket or device)\n");
+  folder_.add("models/a.blend");
+  EXPECT_EQ(
+      warnings(folder_, ""),
+      "dsbuild: warning: models.dir: not used of models: 1 file of other endings (1 .blend); " +
+          mesh_endings_text(" and ") +
+          " are read; 2 that are no files (a pipe, socket or device)\n");
 }
 
 TEST_F(RecipeReadTest, FollowsLinkedFoldersOnce) {

@@ -213,8 +213,8 @@ TEST(OffReader, NeedsNoKeyword) {
   expect_tetra(parse_model(file.substr(4), "m").mesh);
   expect_tetra(parse_model("# made\n" + file.substr(4), "m").mesh);
   expect_tetra(parse_model("\xef\xbb\xbf" + file, "m").mesh);
-  EXPECT_THAT(error_of("4 4 6 8\n0 0 0\n"), HasSubstr("wanted a PLY or OFF file"));
-  EXPECT_THAT(error_of("4 4 6\nwords\n"), HasSubstr("wanted a PLY or OFF file"));
+  EXPECT_THAT(error_of("4 4 6 8\n0 0 0\n"), HasSubstr("wanted a mesh file"));
+  EXPECT_THAT(error_of("4 4 6\nwords\n"), HasSubstr("wanted a mesh file"));
 }
 
 TEST(OffReader, CountsAStrayLastLine) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/tracer/scene/mesh_samples.h"
 #include "tracer/base/files.h"
+#include "tracer/scene/mesh_formats.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,9 +56,10 @@ TEST(ReadModel, ReadsTheRealModels) {
 }
 
 TEST(ReadModel, SeedsOfTheFuzzTargetsAreReadOrRefused) {
-  std::size_t good = 0, refused = 0;
-  for (const char* folder : {"ply", "off"})
-    for (const fs::path& file : files_in(fs::path(DS_SOURCE_DIR "/tests/fuzz/corpus") / folder)) {
+  for (const std::string_view ending : mesh_endings()) {
+    std::size_t good = 0, refused = 0;
+    for (const fs::path& file :
+         files_in(fs::path(DS_SOURCE_DIR "/tests/fuzz/corpus") / ending.substr(1))) {
       try {
         expect_sound(normalise(read_model(file).mesh, {}), file);
         ++good;
@@ -66,8 +68,9 @@ TEST(ReadModel, SeedsOfTheFuzzTargetsAreReadOrRefused) {
         ++refused;
       }
     }
-  EXPECT_GT(good, 0U);
-  EXPECT_GT(refused, 0U);
+    EXPECT_GT(good, 0U) << ending;
+    EXPECT_GT(refused, 0U) << ending;
+  }
 }
 
 TEST(ReadModel, GoesByTheContentNotTheName) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/tracer/scene/mesh_samples.h"
+#include "tracer/scene/mesh_formats.h"
 
 namespace ds {
 namespace {
@@ -120,10 +121,11 @@ TEST(OffReader, EveryCutIsAnError) {
 }
 
 TEST(OffReader, SaysWhatAFileOfAnotherKindBeginsWith) {
-  EXPECT_EQ(error_of(""), "m: wanted a PLY or OFF file, found an empty one");
-  EXPECT_EQ(error_of("solid cube\n"),
-            "m: wanted a PLY or OFF file, found one that begins \"solid cube?\"");
-  EXPECT_THAT(error_of("XOFF\n1 1 1\n"), HasSubstr("wanted a PLY or OFF file"));
+  const std::string wanted = "m: wanted a mesh file (" + mesh_format_names() + "), found ";
+  EXPECT_THAT(wanted, HasSubstr("PLY"));
+  EXPECT_EQ(error_of(""), wanted + "an empty one");
+  EXPECT_EQ(error_of("GIF89a\n"), wanted + "one that begins \"GIF89a?\"");
+  EXPECT_THAT(error_of("XOFF\n1 1 1\n"), HasSubstr(wanted));
 }
 
 }  // namespace

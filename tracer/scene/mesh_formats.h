@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tracer/scene/mesh_polygons.h"
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ds {
+
+/// A kind of mesh file. To add one: NAME_reader.cc, which defines the MeshFormat NAME_format and
+/// states the format at its top, and NAME in the list of mesh.cmake. Nothing else knows of it.
+struct MeshFormat {
+  std::string_view name;     ///< "PLY"
+  std::string_view endings;  ///< of its files, in lower case, with blanks between: ".ply"
+  std::string_view holds;    ///< what a file may have beside faces, for the reference
+  /// Whether a file is of this kind. `bytes` are its own less a byte order mark, `file` is its path: for
+  /// kinds whose content does not tell them. Cheap whatever the bytes are, and throws nothing.
+  bool (*matches)(std::string_view bytes, const std::string& file);
+  /// `name` stands for the path in messages. Throws Error(asset).
+  Polygons (*read)(std::string_view bytes, const std::string& name);
+};
+
+/// All, in the order in which they are asked whether a file is theirs.
+std::span<const MeshFormat* const> mesh_formats();
+
+/// "PLY or OFF".
+std::string mesh_format_names();
+/// ".ply", ".off".
+std::vector<std::string_view> mesh_endings();
+/// ".ply or .off", with another last joint where it is given: ".ply and .off".
+std::string mesh_endings_text(std::string_view last_joint = " or ");
+/// Whether a path has that ending (".ply"), in any case.
+bool has_ending(const std::filesystem::path& file, std::string_view ending);
+/// Whether it has one of the formats'.
+bool has_mesh_ending(const std::filesystem::path& file);
+
+/// Table of the formats, for recipes/README.md.
+std::string mesh_format_reference();
+
+}  // namespace ds
