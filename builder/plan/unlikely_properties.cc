@@ -29,9 +29,12 @@ class PropertyFinder {
     const MeshExtras reads = reads_of_image(spec);
     for (const auto& [name, count] : *unlikely_) {
       const MeshReportColumn& column = *mesh_report_column(name);
-      if (!(reads.*column.property) || !seen_.insert(column.name).second) continue;
+      const bool is_read = column.property == nullptr || reads.*column.property;
+      if (!is_read || !seen_.insert(column.name).second) continue;
       add_example(found_[column.name], spec.model_name);
-      if (!std::exchange(counted_, true)) add_example(all_, spec.model_name);
+      // Parts that are never read are no fault of the model: they are said, not counted.
+      if (column.property != nullptr && !std::exchange(counted_, true))
+        add_example(all_, spec.model_name);
     }
   }
 
@@ -54,9 +57,10 @@ class PropertyFinder {
 
  private:
   static const char* name_of(const MeshReportColumn& column) {
-    return column.property == &MeshExtras::colors ? "colours"
-           : column.property == &MeshExtras::uvs  ? "uvs"
-                                                  : "normals";
+    return column.property == nullptr               ? "parts"
+           : column.property == &MeshExtras::colors ? "colours"
+           : column.property == &MeshExtras::uvs    ? "uvs"
+                                                    : "normals";
   }
 
   MeshExtras reads_of_image(const ImageSpec& spec) {

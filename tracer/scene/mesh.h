@@ -63,8 +63,8 @@ struct MeshReport {
   std::uint64_t out_of_range = 0;
   std::uint64_t non_finite = 0;  ///< vertices with a NaN, infinite or too far coordinate, removed
                                  ///< with all their faces
-  /// Kept vertices whose normal, uv or colour is not finite; that is set to 0, of a colour only the
-  /// components that are not.
+  /// Kept vertices whose normal, uv or colour is not finite, or in no list where an index leads; that is
+  /// set to 0, of a colour only the components that are not.
   std::uint64_t bad_attributes = 0;
   /// Colours, of vertices or faces as the file has them, with a part below 0, which becomes 0, or
   /// above 1, which stays.
@@ -76,7 +76,15 @@ struct MeshReport {
   /// Properties of a PLY file that are not used: an earlier one means the same, or they lack those
   /// that make them whole.
   std::uint64_t unused_places = 0, unused_normals = 0, unused_uvs = 0, unused_colors = 0;
-  std::uint64_t zero_area = 0;        ///< triangles removed: no area
+  /// Corners without a uv, and vertices or faces without a colour, of files in which others have one:
+  /// they get 0 0 and white.
+  std::uint64_t missing_uvs = 0, missing_colors = 0;
+  std::uint64_t unused_materials = 0;   ///< that a file's faces name
+  std::uint64_t unused_attributes = 0;  ///< facets with numbers that may be colours
+  std::uint64_t unused_elements = 0;    ///< lines, points and curves
+  std::uint64_t unused_surfaces = 0;    ///< of other kinds than faces
+  std::uint64_t unknown_lines = 0;      ///< that begin with no word of the format
+  std::uint64_t zero_area = 0;          ///< triangles removed: no area
   std::uint64_t duplicate_faces = 0;  ///< triangles removed: the same three corner positions as an
                                       ///< earlier one, whatever the order
   /// Vertices no kept triangle uses, removed (non-finite included).
@@ -94,7 +102,8 @@ struct MeshReport {
 
 /// The counts of MeshReport with their names, in the order a table should have them. `damage`: what
 /// was done about what no whole file holds. `unlikely`: what the count says of a property that whole
-/// files have and that is hardly what is meant, which matters to pictures that read it. Both null for
+/// files have and that is hardly what is meant, which matters to pictures that read it; without a
+/// `property` of parts that are not read, which is as it should be, but must be known. Both null for
 /// counts that tell of a mesh and change no picture, as triangles without area do not.
 struct MeshReportColumn {
   const char* name;
@@ -121,7 +130,7 @@ inline constexpr std::array k_mesh_report_columns{
                      "vertices not finite or beyond 1e18 removed with their faces", nullptr,
                      nullptr, true},
     MeshReportColumn{"bad_attributes", &MeshReport::bad_attributes,
-                     "normals, uvs or colours not finite set to 0"},
+                     "normals, uvs or colours not finite or out of range set to 0"},
     MeshReportColumn{"negative_colors", &MeshReport::negative_colors, nullptr,
                      "have parts below 0, which are taken as 0", &MeshExtras::colors},
     MeshReportColumn{
@@ -148,6 +157,26 @@ inline constexpr std::array k_mesh_report_columns{
                      &MeshExtras::uvs},
     MeshReportColumn{"unused_colors", &MeshReport::unused_colors, nullptr, k_first_property_counts,
                      &MeshExtras::colors},
+    MeshReportColumn{"missing_uvs", &MeshReport::missing_uvs, nullptr,
+                     "are missing at corners of files that have some elsewhere: 0 0 is taken there",
+                     &MeshExtras::uvs},
+    MeshReportColumn{"missing_colors", &MeshReport::missing_colors, nullptr,
+                     "are missing in files that have some elsewhere: white is taken there",
+                     &MeshExtras::colors},
+    MeshReportColumn{
+        "unused_materials", &MeshReport::unused_materials, nullptr,
+        "have materials in their files, which are not read: what the recipe gives them "
+        "is shown"},
+    MeshReportColumn{"unused_attributes", &MeshReport::unused_attributes, nullptr,
+                     "are attributes of STL facets, into which programs write colours in ways that "
+                     "contradict each other, and are not read",
+                     &MeshExtras::colors},
+    MeshReportColumn{"unused_elements", &MeshReport::unused_elements, nullptr,
+                     "are lines, points or curves, which have no surface, and are not read"},
+    MeshReportColumn{"unused_surfaces", &MeshReport::unused_surfaces,
+                     "surfaces that are not made of faces not read", nullptr, nullptr, true},
+    MeshReportColumn{"unknown_lines", &MeshReport::unknown_lines,
+                     "lines that begin with no word of the format not read"},
     MeshReportColumn{"zero_area", &MeshReport::zero_area},
     MeshReportColumn{"duplicate_faces", &MeshReport::duplicate_faces},
     MeshReportColumn{"unreferenced", &MeshReport::unreferenced},
@@ -174,7 +203,7 @@ std::string to_text(const MendedDamage& damage);
 
 /// Raised when reading makes another mesh or report of some file: what was found out about files
 /// before counts no more.
-inline constexpr int k_mesh_reader_version = 9;
+inline constexpr int k_mesh_reader_version = 10;
 
 /// A mesh as its file describes it, before normalisation.
 struct Model {

@@ -14,18 +14,33 @@
 namespace ds {
 namespace {
 
-using Key = std::array<std::uint32_t, 4>;
+using Key = std::array<std::uint32_t, 5>;
 
 std::uint32_t bits(float x) {
   return std::bit_cast<std::uint32_t>(x);
 }
 
-/// What tells a corner from others of its vertex: uv and the number of its face's colour.
+/// Equal colours, and equal normals, have equal numbers.
+std::vector<std::uint32_t> numbered(const std::vector<MeshColor>& colors) {
+  std::vector<std::array<std::uint32_t, 4>> keys;
+  keys.reserve(colors.size());
+  for (const MeshColor& c : colors)
+    keys.push_back({bits(c[0]), bits(c[1]), bits(c[2]), bits(c[3])});
+  return first_equal<4>(keys);
+}
+std::vector<std::uint32_t> numbered(const std::vector<Vec3>& normals) {
+  std::vector<std::array<std::uint32_t, 3>> keys;
+  keys.reserve(normals.size());
+  for (const Vec3 n : normals)
+    keys.push_back({bits(n.x), bits(n.y), bits(n.z)});
+  return first_equal<3>(keys);
+}
+
+/// What tells a corner from others of its vertex: uv, and the numbers of its normal and of its face's
+/// colour.
 std::vector<Key> corner_keys(const Polygons& polygons) {
-  std::vector<Key> colors;
-  for (const MeshColor& c : polygons.face_colors)
-    colors.push_back({bits(c[0]), bits(c[1]), bits(c[2]), bits(c[3])});
-  const std::vector<std::uint32_t> color = first_equal<4>(colors);
+  const std::vector<std::uint32_t> color = numbered(polygons.face_colors);
+  const std::vector<std::uint32_t> normal = numbered(polygons.corner_normals);
   std::vector<Key> keys;
   keys.reserve(polygons.corners.size());
   std::size_t face = 0;
@@ -33,7 +48,8 @@ std::vector<Key> corner_keys(const Polygons& polygons) {
     while (c >= polygons.face_ends[face])
       ++face;
     const Vec2 uv = polygons.corner_uvs.empty() ? Vec2{} : polygons.corner_uvs[c];
-    keys.push_back({polygons.corners[c], bits(uv.x), bits(uv.y), color.empty() ? 0 : color[face]});
+    keys.push_back({polygons.corners[c], bits(uv.x), bits(uv.y), color.empty() ? 0 : color[face],
+                    normal.empty() ? 0 : normal[c]});
   }
   return keys;
 }
@@ -43,12 +59,13 @@ class Splitter {
   explicit Splitter(Polygons& polygons) : polygons_(polygons) {
     const std::size_t vertices = polygons.positions.size();
     if (!polygons.corner_uvs.empty()) polygons.uvs.assign(vertices, {});
+    if (!polygons.corner_normals.empty()) polygons.normals.assign(vertices, {});
     if (!polygons.face_colors.empty()) polygons.colors.assign(vertices, {1, 1, 1, 1});
   }
 
   void split() {
     const std::vector<Key> keys = corner_keys(polygons_);
-    const std::vector<std::uint32_t> first = first_equal<4>(keys);
+    const std::vector<std::uint32_t> first = first_equal<5>(keys);
     std::vector<std::uint32_t> vertex_of(first.size(), LineCursor::k_bad_index);
     std::vector<char> used(polygons_.positions.size(), 0);
     std::size_t face = 0;
@@ -60,12 +77,15 @@ class Splitter {
         vertex_of[c] = used[v] ? copy(v) : v;
         used[v] = 1;
         if (!polygons_.corner_uvs.empty()) polygons_.uvs[vertex_of[c]] = polygons_.corner_uvs[c];
+        if (!polygons_.corner_normals.empty())
+          polygons_.normals[vertex_of[c]] = polygons_.corner_normals[c];
         if (!polygons_.face_colors.empty())
           polygons_.colors[vertex_of[c]] = polygons_.face_colors[face];
       }
       polygons_.corners[c] = vertex_of[first[c]];
     }
     polygons_.corner_uvs.clear();
+    polygons_.corner_normals.clear();
     polygons_.face_colors.clear();
   }
 
@@ -118,6 +138,20 @@ bool is_bright(float x) {
 
 }  // namespace
 
+std::uint64_t fill_missing_colors(std::vector<MeshColor>& colors) {
+  const bool bytes = std::any_of(colors.begin(), colors.end(), [](const MeshColor& c) {
+    return c[0] > 1 || c[1] > 1 || c[2] > 1;
+  });
+  const float white = bytes ? 255 : 1;
+  std::uint64_t missing = 0;
+  for (MeshColor& color : colors) {
+    if (color != k_missing_color) continue;
+    color = {white, white, white, k_no_alpha};
+    ++missing;
+  }
+  return missing;
+}
+
 void unit_colors(std::vector<MeshColor>& colors, DarkColors dark, MeshReport& report) {
   ColorRange rgb, alpha;
   for (const MeshColor& c : colors) {
@@ -146,7 +180,10 @@ void split_corners(Polygons& polygons, MeshReport& report) {
     polygons.face_colors.clear();
   }
   if (!polygons.uvs.empty() && !polygons.corner_uvs.empty()) report.unused_uvs += 2;
-  if (!polygons.corner_uvs.empty() || !polygons.face_colors.empty()) Splitter(polygons).split();
+  if (!polygons.normals.empty() && !polygons.corner_normals.empty()) report.unused_normals += 3;
+  if (!polygons.corner_uvs.empty() || !polygons.corner_normals.empty() ||
+      !polygons.face_colors.empty())
+    Splitter(polygons).split();
 }
 
 }  // namespace ds

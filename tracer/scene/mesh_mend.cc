@@ -47,7 +47,7 @@ void count_faces(const Polygons& polygons, MeshReport& report) {
 
 /// Such a file loses the faces at its last vertex, and all others are of wrong vertices.
 void refuse_indices_from_1(const Polygons& polygons, const std::string& name) {
-  if (polygons.corners.empty()) return;
+  if (polygons.corners.empty() || polygons.counts_from_1) return;
   const auto [least, most] = std::minmax_element(polygons.corners.begin(), polygons.corners.end());
   if (*least == 1 && *most == polygons.positions.size())
     fail(
@@ -248,6 +248,13 @@ Model mend(Polygons polygons, const std::string& name, Winding winding) {
   report.unused_normals = polygons.unused.normals;
   report.unused_uvs = polygons.unused.uvs;
   report.unused_colors = polygons.unused.colors;
+  report.unused_materials = polygons.unused.materials;
+  report.unused_attributes = polygons.unused.attributes;
+  report.unused_elements = polygons.unused.elements;
+  report.unused_surfaces = polygons.unused.surfaces;
+  report.unknown_lines = polygons.unused.lines;
+  report.missing_uvs = polygons.missing.uvs;
+  report.missing_colors = polygons.missing.colors;
   refuse_indices_from_1(polygons, name);
   split_corners(polygons, report);
   if (report.vertices > k_most_vertices || report.triangles > k_most_triangles)

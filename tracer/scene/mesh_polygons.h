@@ -21,9 +21,14 @@ struct DarkColors {
   float color = 0, alpha = 0;
 };
 
-/// Properties that a reader passes over, see MeshReport.
-struct UnusedProperties {
+/// What a reader passes over, see MeshReport.
+struct UnusedParts {
   std::uint64_t places = 0, normals = 0, uvs = 0, colors = 0;
+  std::uint64_t materials = 0, attributes = 0, elements = 0, surfaces = 0, lines = 0;
+};
+/// What a file gives to others of its corners, vertices or faces, see MeshReport.
+struct MissingParts {
+  std::uint64_t uvs = 0, colors = 0;
 };
 
 /// A model as a reader finds it: polygons of any size, nothing checked or mended. Indices that are
@@ -38,9 +43,12 @@ struct Polygons {
   std::vector<std::uint32_t> corners;  ///< vertex indices of all faces, one face after another
   std::vector<std::size_t> face_ends;  ///< where in `corners` each face ends
   std::vector<Vec2> corner_uvs;        ///< empty or as long as `corners`; goes before `uvs`
+  std::vector<Vec3> corner_normals;    ///< likewise before `normals`
   std::vector<MeshColor> face_colors;  ///< empty or one a face; where there are no `colors`
   DarkColors dark_colors, dark_face_colors;
-  UnusedProperties unused;
+  UnusedParts unused;
+  MissingParts missing;
+  bool counts_from_1 = false;      ///< in the file, as its format wants it
   std::size_t trailing_bytes = 0;  ///< behind what the header promises
 
   std::span<const std::uint32_t> face(std::size_t i) const {
@@ -58,10 +66,16 @@ Model mend(Polygons polygons, const std::string& name, Winding winding);
 /// 255. Alpha by its own values; one that is not there becomes 1.
 void unit_colors(std::vector<MeshColor>& colors);
 
-/// Gives each corner that has a uv or a colour of its own a vertex of its own, so that both stand at
-/// vertices; corners that agree share one. A vertex stays in its place for the first of its corners; those of
-/// further ones follow behind all. Leaves polygons without either as they are. Colours of vertices go
-/// before those of faces, uvs of corners before those of vertices. Counts what is passed over, and
+/// The colour of what a file gives none although it gives others one, until white takes its place:
+/// in the range of the others.
+inline constexpr MeshColor k_missing_color{-1, -1, -1, -1};
+/// Returns how many there were.
+std::uint64_t fill_missing_colors(std::vector<MeshColor>& colors);
+
+/// Gives each corner that has a uv, a normal or a colour of its own a vertex of its own, so that all
+/// stand at vertices; corners that agree share one. A vertex stays in its place for the first of its corners; those of
+/// further ones follow behind all. Leaves polygons without any as they are. Colours of vertices go
+/// before those of faces, uvs and normals of corners before those of vertices. Counts what is passed over, and
 /// colours hardly meant.
 void split_corners(Polygons& polygons, MeshReport& report);
 

@@ -69,7 +69,7 @@ std::string printable(std::string_view text) {
 double LineCursor::number() {
   const ParsedNumber parsed = parse_number({at_, bytes_left()});
   const char* stop = at_ + parsed.size;
-  if (parsed.size == 0 || (stop != end_ && !is_break(*stop))) not_a("a number");
+  if (parsed.size == 0 || !is_break(stop)) not_a("a number");
   at_ = stop;
   return parsed.value;
 }
@@ -77,7 +77,7 @@ double LineCursor::number() {
 std::int64_t LineCursor::integer() {
   std::int64_t value = 0;
   const auto [stop, code] = std::from_chars(at_, end_, value);
-  if (code != std::errc() || (stop != end_ && !is_break(*stop))) not_a("an integer");
+  if (code != std::errc() || !is_break(stop)) not_a("an integer");
   at_ = stop;
   return value;
 }
@@ -85,7 +85,7 @@ std::int64_t LineCursor::integer() {
 std::uint32_t LineCursor::index() {
   std::uint32_t value = 0;
   const auto [stop, code] = std::from_chars(at_, end_, value);
-  if (code == std::errc() && (stop == end_ || is_break(*stop))) {
+  if (code == std::errc() && is_break(stop)) {
     at_ = stop;
     return value;
   }
@@ -95,9 +95,22 @@ std::uint32_t LineCursor::index() {
 std::string_view LineCursor::word() {
   if (line_done()) return {};
   const char* begin = at_;
-  while (!at_break())
+  while (!is_break(at_))
     ++at_;
   return {begin, static_cast<std::size_t>(at_ - begin)};
+}
+
+std::string_view LineCursor::rest_of_line() {
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+  while (at_ != end_ && is_blank(*at_))
+    ++at_;
+  const char* const begin = at_;
+  while (at_ != end_ && *at_ != '\n' && *at_ != '\r')
+    ++at_;
+  const char* last = at_;
+  while (last != begin && is_blank(last[-1]))
+    --last;
+  return {begin, static_cast<std::size_t>(last - begin)};
 }
 
 void LineCursor::skip_line() {

@@ -29,13 +29,16 @@ std::string printable(std::string_view text);
 class LineCursor {
  public:
   /// Starts before the first line of `text`, whose number in the file is `first_line`. `comment`
-  /// begins a comment that runs to the end of the line; '\0' for none.
-  LineCursor(std::string name, std::string_view text, std::uint64_t first_line, char comment)
+  /// begins a comment that runs to the end of the line; the last character of a line, where it is
+  /// `continuation` and stands in no comment, makes the next one go on with it; '\0' for none.
+  LineCursor(std::string name, std::string_view text, std::uint64_t first_line, char comment,
+             char continuation = '\0')
       : name_(std::move(name)),
         at_(text.data()),
         end_(text.data() + text.size()),
         line_(first_line),
-        comment_(comment) {}
+        comment_(comment),
+        continuation_(continuation) {}
 
   /// Goes to the next line that holds something; false at the end of the text.
   bool next_line() {
@@ -57,8 +60,12 @@ class LineCursor {
 
   /// Whether the current line holds nothing further.
   bool line_done() {
-    while (at_ != end_ && (*at_ == ' ' || *at_ == '\t'))
-      ++at_;
+    for (;;) {
+      while (at_ != end_ && (*at_ == ' ' || *at_ == '\t'))
+        ++at_;
+      if (at_ == end_ || !goes_on(at_)) break;
+      skip_line();
+    }
     return at_ == end_ || *at_ == '\n' || *at_ == '\r' || is_comment(*at_);
   }
 
@@ -79,6 +86,8 @@ class LineCursor {
 
   /// The next word of the current line; empty where the line is done.
   std::string_view word();
+  /// What is left of the current line, comments and all, without the blanks around it. Then it is done.
+  std::string_view rest_of_line();
   /// Steps back over the last `count` characters of the word just read.
   void put_back(std::size_t count) { at_ -= count; }
 
@@ -100,10 +109,15 @@ class LineCursor {
 
  private:
   bool is_comment(char c) const { return c == comment_ && comment_ != '\0'; }
-  bool is_break(char c) const {
-    return c == ' ' || c == '\t' || c == '\n' || c == '\r' || is_comment(c);
+  /// Whether the line that ends behind `p` is continued.
+  bool goes_on(const char* p) const {
+    return *p == continuation_ && continuation_ != '\0' &&
+           (p + 1 == end_ || p[1] == '\n' || p[1] == '\r');
   }
-  bool at_break() const { return at_ == end_ || is_break(*at_); }
+  bool is_break(const char* p) const {
+    return p == end_ || *p == ' ' || *p == '\t' || *p == '\n' || *p == '\r' || is_comment(*p) ||
+           goes_on(p);
+  }
   void skip_line();
   [[noreturn]] void not_a(const char* wanted);
 
@@ -111,7 +125,7 @@ class LineCursor {
   const char* at_;
   const char* end_;
   std::uint64_t line_;
-  char comment_;
+  char comment_, continuation_;
   bool on_line_ = false;  ///< false only before the first next_line
 };
 

@@ -44,6 +44,7 @@ std::vector<std::uint32_t> first_equal(std::span<const std::array<std::uint32_t,
 }
 template std::vector<std::uint32_t> first_equal(std::span<const std::array<std::uint32_t, 3>>);
 template std::vector<std::uint32_t> first_equal(std::span<const std::array<std::uint32_t, 4>>);
+template std::vector<std::uint32_t> first_equal(std::span<const std::array<std::uint32_t, 5>>);
 template std::vector<std::uint32_t> first_equal(std::span<const std::array<std::uint32_t, 6>>);
 template std::vector<std::uint32_t> first_equal(std::span<const std::array<std::uint32_t, 7>>);
 

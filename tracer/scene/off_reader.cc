@@ -202,19 +202,11 @@ class OffReader {
       const bool is_colour = values >= 3;
       if (is_colour && !coloured) {
         coloured = true;
-        out_.face_colors.assign(out_.face_ends.size() - 1, k_no_colour);
+        out_.face_colors.assign(out_.face_ends.size() - 1, k_missing_color);
       }
-      if (coloured) out_.face_colors.push_back(is_colour ? color : k_no_colour);
+      if (coloured) out_.face_colors.push_back(is_colour ? color : k_missing_color);
     }
-    for (MeshColor& color : out_.face_colors)
-      if (color == k_no_colour) color = white_of_range();
-  }
-
-  /// White in the range of the file's other colours.
-  MeshColor white_of_range() const {
-    for (const MeshColor& c : out_.face_colors)
-      if (c[0] > 1 || c[1] > 1 || c[2] > 1) return {255, 255, 255, k_no_alpha};
-    return {1, 1, 1, k_no_alpha};
+    out_.missing.colors = fill_missing_colors(out_.face_colors);
   }
 
   /// One further line may stand there, if it is no face.
@@ -240,8 +232,6 @@ class OffReader {
     return numbers.size() > 1 && numbers[0] > 0 &&
            static_cast<std::uint64_t>(numbers[0]) < numbers.size();
   }
-
-  static constexpr MeshColor k_no_colour{-1, -1, -1, -1};
 
   LineCursor cursor_;
   OffKeyword keyword_;

@@ -63,7 +63,7 @@ FoundFamily find_family(const PlyElement& element, const Family& family) {
   return found;
 }
 
-std::uint64_t& of_kind(UnusedProperties& unused, PlyKind kind) {
+std::uint64_t& of_kind(UnusedParts& unused, PlyKind kind) {
   return kind == PlyKind::place    ? unused.places
          : kind == PlyKind::normal ? unused.normals
          : kind == PlyKind::uv     ? unused.uvs

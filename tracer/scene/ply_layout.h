@@ -44,7 +44,7 @@ struct PlyLayout {
   std::vector<PlySlot> slots;  ///< one a property
   std::array<bool, k_ply_kinds> has{};
   DarkColors dark_colors;
-  UnusedProperties unused;
+  UnusedParts unused;
 
   bool has_kind(PlyKind kind) const { return has[static_cast<std::size_t>(kind)]; }
   /// A whole colour, or an alpha alone, whose colour is white.

@@ -24,7 +24,7 @@
 namespace ds {
 namespace {
 
-void add(UnusedProperties& to, const UnusedProperties& more) {
+void add(UnusedParts& to, const UnusedParts& more) {
   to.places += more.places;
   to.normals += more.normals;
   to.uvs += more.uvs;
@@ -107,6 +107,16 @@ void read_corner_uvs(Source& source, const PlyProperty& property, std::vector<Ve
   }
 }
 
+/// For the corners, and the faces, that have none although others have.
+void fill_uvs(Polygons& out) {
+  out.missing.uvs += out.corners.size() - out.corner_uvs.size();
+  out.corner_uvs.resize(out.corners.size());
+}
+void fill_colors(Polygons& out) {
+  out.missing.colors += out.face_ends.size() - out.face_colors.size();
+  out.face_colors.resize(out.face_ends.size(), {1, 1, 1, 1});
+}
+
 template <typename Source>
 void read_faces(Source& source, const PlyHeader& header, const PlyElement& element,
                 const std::string& name, Polygons& out) {
@@ -119,8 +129,8 @@ void read_faces(Source& source, const PlyHeader& header, const PlyElement& eleme
       believable(element.count, source.bytes_left(), least_bytes(element, header.format));
   out.face_ends.reserve(out.face_ends.size() + expected);
   // Strips may stand before.
-  if (has_uvs) out.corner_uvs.resize(out.corners.size());
-  if (has_colors) out.face_colors.resize(out.face_ends.size(), {1, 1, 1, 1});
+  if (has_uvs) fill_uvs(out);
+  if (has_colors) fill_colors(out);
   bool any_uv = false;
   PlyRow row = first_row();
   for (std::uint64_t i = 0; i < element.count; ++i) {
@@ -144,7 +154,7 @@ void read_faces(Source& source, const PlyHeader& header, const PlyElement& eleme
     // Faces without a picture have an empty list.
     const std::size_t before = out.face_ends.empty() ? 0 : out.face_ends.back();
     any_uv = any_uv || out.corner_uvs.size() > before;
-    if (has_uvs && out.corner_uvs.size() == before) out.corner_uvs.resize(out.corners.size());
+    if (has_uvs && out.corner_uvs.size() == before) fill_uvs(out);
     if (has_uvs && out.corner_uvs.size() != out.corners.size())
       source.fail_here(fmt::format("face {} has {} corners and {} pairs of {}", i,
                                    out.corners.size() - before, out.corner_uvs.size() - before,
@@ -152,7 +162,10 @@ void read_faces(Source& source, const PlyHeader& header, const PlyElement& eleme
     if (has_colors) out.face_colors.push_back(color_of(row));
     out.face_ends.push_back(out.corners.size());
   }
-  if (!any_uv) out.corner_uvs.clear();
+  if (!any_uv) {
+    out.corner_uvs.clear();
+    out.missing.uvs = 0;
+  }
 }
 
 /// The triangles of one strip: the second, fourth, ... run the other way round.
@@ -192,8 +205,8 @@ void read_strips(Source& source, const PlyElement& element, const std::string& n
     source.end();
   }
   // Corners and colours of faces say nothing of strips.
-  if (!out.corner_uvs.empty()) out.corner_uvs.resize(out.corners.size());
-  if (!out.face_colors.empty()) out.face_colors.resize(out.face_ends.size(), {1, 1, 1, 1});
+  if (!out.corner_uvs.empty()) fill_uvs(out);
+  if (!out.face_colors.empty()) fill_colors(out);
 }
 
 template <typename Source>

@@ -101,5 +101,36 @@ TEST(Believable, IsWhatTheBytesCanHold) {
   EXPECT_EQ(believable(3, 100, 12), 3U);
 }
 
+TEST(LineCursor, JoinsLinesWhereTheirEndSaysSo) {
+  LineCursor cursor("m", "a 1\\\n2 \\\r\n 3\nb \\ # \\\n4 \\", 1, '#', '\\');
+  ASSERT_TRUE(cursor.next_line());
+  EXPECT_EQ(cursor.word(), "a");
+  for (const double number : {1, 2, 3}) {
+    ASSERT_FALSE(cursor.line_done());
+    EXPECT_EQ(cursor.number(), number);
+  }
+  EXPECT_TRUE(cursor.line_done());
+  EXPECT_EQ(cursor.line(), 3U);
+  ASSERT_TRUE(cursor.next_line());
+  EXPECT_EQ(cursor.word(), "b");
+  EXPECT_EQ(cursor.word(), "\\") << "not at the line's end";
+  EXPECT_TRUE(cursor.line_done()) << "a comment is not continued";
+  ASSERT_TRUE(cursor.next_line());
+  EXPECT_EQ(cursor.number(), 4);
+  EXPECT_TRUE(cursor.line_done());
+  EXPECT_FALSE(cursor.next_line());
+}
+
+TEST(LineCursor, GivesTheRestOfALineAsItStands) {
+  LineCursor cursor("m", "name  a # b\t\r\nnext\n", 1, '#');
+  ASSERT_TRUE(cursor.next_line());
+  EXPECT_EQ(cursor.word(), "name");
+  EXPECT_EQ(cursor.rest_of_line(), "a # b");
+  EXPECT_TRUE(cursor.line_done());
+  ASSERT_TRUE(cursor.next_line());
+  EXPECT_EQ(cursor.word(), "next");
+  EXPECT_EQ(cursor.rest_of_line(), "");
+}
+
 }  // namespace
 }  // namespace ds

@@ -93,6 +93,20 @@ TEST(PlyNames, VerticesColoursGoBeforeFacesAndCornersUvsBeforeVertices) {
   EXPECT_THAT(unlikely(uvs), ElementsAre(Pair("unused_uvs", 2)));
 }
 
+TEST(MissingParts, UvsAndColoursThatOthersHaveAreCounted) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+      "z\n"
+      "element face 3\nproperty list uchar int vertex_index\nproperty list uchar float texcoord\n"
+      "end_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+  const auto uvs = [&](const char* faces) { return unlikely(parse_model(head + faces, "m")); };
+  EXPECT_THAT(uvs("3 0 1 2 0\n3 0 1 3 6 0 0 1 0 0 1\n3 0 2 3 0\n"),
+              ElementsAre(Pair("missing_uvs", 6)));
+  EXPECT_THAT(uvs("3 0 1 2 0\n3 0 1 3 0\n3 0 2 3 0\n"), IsEmpty()) << "none has one";
+  EXPECT_THAT(unlikely(parse_model(replaced(k_tetra_off, "3 0 2 1", "3 0 2 1 255 0 9"), "m")),
+              ElementsAre(Pair("missing_colors", 3)));
+}
+
 TEST(UnlikelyColours, SharesStoredAsIntegers) {
   const std::vector<std::string> rgb{"uchar red", "uchar green", "uchar blue"};
   EXPECT_THAT(unlikely(triangle(rgb, "1 0 1")), ElementsAre(Pair("dark_colors", 3)));
