@@ -40,6 +40,9 @@ inline const char* const k_tetra_ply =
     "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
     "0 0 0\n4 0 0\n0 4 0\n0 0 4\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
 
+inline const char* const k_tetra_obj =
+    "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 0 0 4\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
 inline void expect_tetra(const FileMesh& mesh) {
   EXPECT_EQ(mesh.positions, k_tetra_positions);
   EXPECT_EQ(mesh.triangles, k_tetra_triangles);

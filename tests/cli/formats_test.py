@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Mesh formats, from folder to files: one body in each format gives the same pixels."""
+from harness import TinyCase, main
+
+# tests/data/tiny's box, from 0.
+PLACES = [(-1, -1, -2), (1, -1, -2), (1, 1, -2), (-1, 1, -2), (-1, -1, 2), (1, -1, 2), (1, 1, 2), (-1, 1, 2)]
+FACES = [(3, 2, 1, 0), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
+PLANES = ["--set", 'outputs.planes=["depth", "shading_normal", "object_id"]', "--set", "outputs.image=false"]
+
+
+def lines(rows, first):
+    return "".join(f"{first}{' '.join(map(str, row))}\n" for row in rows)
+
+
+def ply():
+    head = ("ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
+            "element face 6\nproperty list uchar int vertex_indices\nend_header\n")
+    return (head + lines(PLACES, "") + lines(FACES, "4 ")).encode()
+
+
+def obj(more=""):
+    return (more + lines(PLACES, "v ") + lines([[v + 1 for v in face] for face in FACES], "f ")).encode()
+
+
+class FormatsTest(TinyCase):
+    def put(self, name, data):
+        path = self.tiny / "models" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data)
+
+    def files(self, model, out=None):
+        folder = (out or self.out) / "images" / model
+        return {path.name: path.read_bytes() for path in sorted(folder.iterdir()) if path.is_file()}
+
+    def test_one_body_is_the_same_pixels_in_every_format(self):
+        (self.tiny / "models/tetra.ply").unlink()
+        for name, data in (("box.ply", ply()), ("box.obj", obj())):
+            self.put(name, data)
+        # In one place: which is a model's is chosen by its name.
+        self.build(*PLANES, "--set", f'environments.files=["{self.tiny}/environments/floor"]')
+        wanted = self.files("box.off")
+        self.assertEqual(len(wanted), 4 * 4)
+        for name in ("box.ply", "box.obj"):
+            self.assertEqual(self.files(name), wanted, name)
+        table = self.run_it("models", self.recipe).out
+        self.assertRegex(table, "(?m)^box.obj +8 +6 +12")
+
+    def test_materials_of_a_file_are_said_once_and_no_concern(self):
+        self.put("a.obj", obj("mtllib not_there.mtl\nusemtl red\n"))
+        self.put("b.obj", obj("usemtl red\nusemtl blue\n"))
+        run = self.run_it("build", self.recipe, "-o", self.out, "--strict", *PLANES)
+        self.assertEqual(run.code, 0, run)
+        self.assertEqual(run.err.count("2 of 4 models (a.obj, b.obj): some of their parts have materials in their "
+                                       "files, which are not read"), 1, run)
+        found = {m["model"]: m for m in self.run_it("models", self.recipe, "--json").json["models"]}
+        self.assertEqual([found[name]["unused_materials"] for name in ("a.obj", "b.obj", "box.off")], [1, 2, 0])
+
+if __name__ == "__main__":
+    main()
