@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Mesh formats, from folder to files: one body in each format gives the same pixels."""
+import struct
+
 from harness import TinyCase, main
 
 # tests/data/tiny's box, from 0.
 PLACES = [(-1, -1, -2), (1, -1, -2), (1, 1, -2), (-1, 1, -2), (-1, -1, 2), (1, -1, 2), (1, 1, 2), (-1, 1, 2)]
 FACES = [(3, 2, 1, 0), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
+TRIANGLES = [(f[0], f[i], f[i + 1]) for f in FACES for i in (1, 2)]
 PLANES = ["--set", 'outputs.planes=["depth", "shading_normal", "object_id"]', "--set", "outputs.image=false"]
 
 
@@ -22,6 +25,11 @@ def obj(more=""):
     return (more + lines(PLACES, "v ") + lines([[v + 1 for v in face] for face in FACES], "f ")).encode()
 
 
+def stl(header=b"solid box"):
+    body = b"".join(struct.pack("<12fH", 0, 0, 0, *(c for v in t for c in PLACES[v]), 0) for t in TRIANGLES)
+    return header.ljust(80) + struct.pack("<I", len(TRIANGLES)) + body
+
+
 class FormatsTest(TinyCase):
     def put(self, name, data):
         path = self.tiny / "models" / name
@@ -34,16 +42,17 @@ class FormatsTest(TinyCase):
 
     def test_one_body_is_the_same_pixels_in_every_format(self):
         (self.tiny / "models/tetra.ply").unlink()
-        for name, data in (("box.ply", ply()), ("box.obj", obj())):
+        for name, data in (("box.ply", ply()), ("box.obj", obj()), ("box.STL", stl())):
             self.put(name, data)
         # In one place: which is a model's is chosen by its name.
         self.build(*PLANES, "--set", f'environments.files=["{self.tiny}/environments/floor"]')
         wanted = self.files("box.off")
         self.assertEqual(len(wanted), 4 * 4)
-        for name in ("box.ply", "box.obj"):
+        for name in ("box.ply", "box.obj", "box.STL"):
             self.assertEqual(self.files(name), wanted, name)
         table = self.run_it("models", self.recipe).out
-        self.assertRegex(table, "(?m)^box.obj +8 +6 +12")
+        for name, faces in (("box.obj", 6), ("box.STL", 12)):
+            self.assertRegex(table, rf"(?m)^{name} +8 +{faces} +12")
 
     def test_materials_of_a_file_are_said_once_and_no_concern(self):
         self.put("a.obj", obj("mtllib not_there.mtl\nusemtl red\n"))

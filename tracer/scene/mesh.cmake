@@ -1,6 +1,6 @@
 # Mesh formats, in the order in which they are asked whether a file is theirs: each is a NAME_reader.cc with a
 # NAME_format (mesh_formats.h).
-set(mesh_formats ply off obj)
+set(mesh_formats ply off stl obj)
 
 set_property(GLOBAL PROPERTY ds_mesh_formats ${mesh_formats})
 list(TRANSFORM mesh_formats APPEND _reader.cc OUTPUT_VARIABLE mesh_readers)

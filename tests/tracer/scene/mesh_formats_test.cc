@@ -51,6 +51,11 @@ TEST(MeshFormats, KnowTheirOwnFilesOnly) {
   EXPECT_EQ(matching(samples::k_tetra_obj, "m"), Names{"OBJ"});
   EXPECT_EQ(matching("# a\nunknown 1\nv 0 0 0\n", "m.OBJ"), Names{"OBJ"});
   EXPECT_EQ(matching("unknown 1\nv 0 0 0\n", "m"), Names{});
+  EXPECT_EQ(matching(samples::k_tetra_stl, "m"), Names{"STL"});
+  for (const char* header : {"solid tetra", "", "made by a program"})
+    EXPECT_EQ(matching(samples::tetra_binary_stl(header), "m"), Names{"STL"}) << header;
+  EXPECT_EQ(matching(samples::tetra_binary_stl("cut").substr(0, 100), "m.stl"), Names{"STL"});
+  EXPECT_EQ(matching(samples::tetra_binary_stl("cut").substr(0, 100), "m"), Names{});
   EXPECT_EQ(matching("", "m"), Names{});
   EXPECT_EQ(matching("GIF89a", "m.gif"), Names{});
 }

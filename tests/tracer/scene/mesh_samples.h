@@ -43,9 +43,27 @@ inline const char* const k_tetra_ply =
 inline const char* const k_tetra_obj =
     "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 0 0 4\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
+inline const char* const k_tetra_stl =
+    "solid tetra\n"
+    "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 4 0\nvertex 4 0 0\nendloop\nendfacet\n"
+    "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 4 0 0\nvertex 0 0 4\nendloop\nendfacet\n"
+    "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 4\nvertex 0 4 0\nendloop\nendfacet\n"
+    "facet normal 0 0 0\nouter loop\nvertex 4 0 0\nvertex 0 4 0\nvertex 0 0 4\nendloop\nendfacet\n"
+    "endsolid tetra\n";
+
 inline void expect_tetra(const FileMesh& mesh) {
   EXPECT_EQ(mesh.positions, k_tetra_positions);
   EXPECT_EQ(mesh.triangles, k_tetra_triangles);
+}
+
+/// The same, where vertices may be in another order.
+inline void expect_tetra_corners(const FileMesh& mesh) {
+  EXPECT_EQ(mesh.positions.size(), k_tetra_positions.size());
+  ASSERT_EQ(mesh.triangles.size(), k_tetra_triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_EQ(mesh.positions[mesh.triangles[t][k]], k_tetra_positions[k_tetra_triangles[t][k]])
+          << t << " " << k;
 }
 
 /// Appends the bytes of a value as `T` in the wanted order.
@@ -56,6 +74,19 @@ void put(std::string& out, double value, std::endian order) {
   std::memcpy(raw, &typed, sizeof(T));
   for (std::size_t i = 0; i < sizeof(T); ++i)
     out += raw[order == std::endian::native ? i : sizeof(T) - 1 - i];
+}
+
+inline std::string tetra_binary_stl(std::string header) {
+  header.resize(80, '\0');
+  put<std::uint32_t>(header, 4, std::endian::little);
+  for (const auto& t : k_tetra_triangles) {
+    header += std::string(12, '\0');
+    for (const std::uint32_t v : t)
+      for (int axis = 0; axis < 3; ++axis)
+        put<float>(header, k_tetra_positions[v][axis], std::endian::little);
+    header += std::string(2, '\0');
+  }
+  return header;
 }
 
 /// `text` with each `from` replaced.
