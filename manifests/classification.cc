@@ -294,27 +294,30 @@ std::optional<std::size_t> Labels::index_of(std::string_view key) const {
   return static_cast<std::size_t>(at - sorted_.begin());
 }
 
-std::vector<std::size_t> Labels::find_all(std::string_view model_file_name) const {
+std::vector<std::size_t> Labels::find_all(std::string_view model_name) const {
   std::vector<std::size_t> found;
   const auto add = [&](std::string_view key) {
     const auto index = index_of(key);
     if (index && std::find(found.begin(), found.end(), *index) == found.end())
       found.push_back(*index);
   };
-  const std::string_view stem = model_file_name.substr(0, model_file_name.rfind('.'));
-  add(model_file_name);
+  const std::string_view file = model_name.substr(model_name.rfind('/') + 1);  // npos + 1 is 0
+  const std::string_view stem = file.substr(0, file.rfind('.'));
+  add(model_name);
+  add(model_name.substr(0, model_name.size() - file.size() + stem.size()));
+  add(file);
   add(stem);
   if (stem.starts_with('m') && all_digits(stem.substr(1))) add(stem.substr(1));
   return found;
 }
 
-std::optional<std::size_t> Labels::find_index(std::string_view model_file_name) const {
-  const std::vector<std::size_t> found = find_all(model_file_name);
+std::optional<std::size_t> Labels::find_index(std::string_view model_name) const {
+  const std::vector<std::size_t> found = find_all(model_name);
   return found.empty() ? std::nullopt : std::optional(found.front());
 }
 
-std::optional<ModelLabel> Labels::find(std::string_view model_file_name) const {
-  const auto index = find_index(model_file_name);
+std::optional<ModelLabel> Labels::find(std::string_view model_name) const {
+  const auto index = find_index(model_name);
   return index ? std::optional(sorted_[*index].second) : std::nullopt;
 }
 

@@ -61,7 +61,7 @@ struct UnsharedClasses {
 UnsharedClasses unshared_classes(const std::optional<Classification>& train,
                                  const std::optional<Classification>& test);
 
-/// Class and split of a model by its file name.
+/// Class and split of a model by its name.
 class Labels {
  public:
   Labels() = default;
@@ -70,13 +70,14 @@ class Labels {
   Labels(const std::optional<Classification>& train, const std::optional<Classification>& test);
 
   /// A class file's "mug.ply" means the file of that name, "mug" any file of that stem, "1298" also
-  /// "m1298.off" (the benchmark's own naming). Where several would do, the first in this order
-  /// counts: whole name, stem, number.
-  std::optional<ModelLabel> find(std::string_view model_file_name) const;
+  /// "m1298.off" (the benchmark's own naming). A model named by its path ("a/mug.ply") is meant by that
+  /// path, with or without its ending, and by what means its file. Where several would do, the first in
+  /// this order counts: path, path less its ending, file name, stem, number.
+  std::optional<ModelLabel> find(std::string_view model_name) const;
   /// Which of the entries `find` would use, below size().
-  std::optional<std::size_t> find_index(std::string_view model_file_name) const;
+  std::optional<std::size_t> find_index(std::string_view model_name) const;
   /// All entries that mean the file: the one that `find` uses, and then those it goes before.
-  std::vector<std::size_t> find_all(std::string_view model_file_name) const;
+  std::vector<std::size_t> find_all(std::string_view model_name) const;
   std::size_t size() const { return sorted_.size(); }
   /// What the class file calls the entry of that index.
   const std::string& name(std::size_t index) const { return sorted_.at(index).first; }

@@ -45,13 +45,15 @@ DatasetRequest request_of(const Arguments& arguments, std::string& image) {
 /// for "m110/0", "images/m110.off/0.png", "0".
 std::string meant_id(const std::string& wanted, const std::vector<std::string_view>& ids) {
   const fs::path path(wanted);
-  const std::string model = path.parent_path().filename().string(), file = path.filename().string();
+  const std::string folder = path.parent_path().string(), file = path.filename().string();
   const std::string view = file.substr(0, file.find('.'));  // "0.mask.png"
   for (const std::string_view id : ids) {
-    const fs::path known(id);
-    const std::string known_model = known.parent_path().string();
-    if (known.filename() == view && !model.empty() &&
-        (known_model == model || fs::path(known_model).stem() == model))
+    const fs::path known(id), model = known.parent_path();
+    const auto ends_with = [&](const fs::path& name) {
+      return folder == name || folder.ends_with("/" + name.string());
+    };
+    if (known.filename() == view &&
+        (ends_with(model) || ends_with(model.parent_path() / model.stem())))
       return std::string(id);
   }
   return "";

@@ -71,10 +71,10 @@ int run_models(const Arguments& arguments) {
   nlohmann::json models = nlohmann::json::array();
   std::size_t failed = 0;
   if (!arguments.json) print_header();
-  for (const std::filesystem::path& file : recipe.models) {
-    const std::string name = file.filename().string();
+  for (const ModelFile& model : recipe.models) {
+    const std::string& name = model.name;
     try {
-      const MeshReport report = read_model(file).report;
+      const MeshReport report = read_model(model.file).report;
       if (!arguments.json) print_row(name, report);
       models.push_back(to_json(name, report));
     } catch (const Error& error) {

@@ -265,8 +265,10 @@ void Execution::remove_left_over() {
   }
   result_.removed_files = removed.size();
   std::error_code not_empty;
-  for (const fs::path& folder : folders)
-    fs::remove(folder, not_empty);
+  // A model's name may be a path: its folder may have left one above empty.
+  for (fs::path folder : folders)
+    while (folder.parent_path() != dataset_.folder && fs::remove(folder, not_empty))
+      folder = folder.parent_path();
   std::set<std::string> wanted;
   for (const PlannedImage& image : plan_.images)
     wanted.insert(image.spec.id);

@@ -49,17 +49,16 @@ std::optional<std::string> licence_near(const fs::path& folder, bool is_asset) {
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> licences_beside(
-    const std::string& kind, const std::vector<fs::path>& assets) {
+    const std::string& kind, const std::vector<std::pair<std::string, fs::path>>& assets) {
   // One look a folder: there may be thousands of models.
   std::map<fs::path, std::optional<std::string>> known;
   std::vector<std::pair<std::string, std::string>> licences;
   const bool is_folder = kind == k_environments;
-  for (const fs::path& asset : assets) {
+  for (const auto& [name, asset] : assets) {
     const fs::path folder = is_folder ? asset : asset.parent_path();
     const auto [entry, is_new] = known.try_emplace(folder);
     if (is_new) entry->second = licence_near(folder, is_folder);
-    if (entry->second)
-      licences.emplace_back(fmt::format("{}/{}", kind, asset.filename().string()), *entry->second);
+    if (entry->second) licences.emplace_back(fmt::format("{}/{}", kind, name), *entry->second);
   }
   return licences;
 }

@@ -200,6 +200,22 @@ std::string unused_text(const Listing& listing, const AssetKind& kind) {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
+/// A path as it is written, less what leads up or to the root: below whatever folder it is put in, it
+/// stays there.
+std::string path_below(const std::string& written) {
+  fs::path below;
+  for (const fs::path& part : fs::path(written).lexically_normal().relative_path())
+    if (part != "..") below /= part;
+  return below.generic_string();
+}
+
+std::vector<fs::path> paths_of(const std::map<std::string, fs::path>& by_name) {
+  std::vector<fs::path> paths;
+  for (const auto& [name, path] : by_name)
+    paths.push_back(path);
+  return paths;
+}
+
 class Finder {
  public:
   Finder(const AssetKind& kind, Settings& settings)
@@ -208,7 +224,8 @@ class Finder {
         dir_key_(std::string(kind.section) + ".dir"),
         files_key_(std::string(kind.section) + ".files") {}
 
-  std::vector<fs::path> find() {
+  /// By name, which sorts them.
+  std::map<std::string, fs::path> find() {
     choose_key();
     if (const RecipeValue* files = settings_.find(files_key_)) {
       for (const RecipeValue& file : *files->array())
@@ -216,10 +233,7 @@ class Finder {
     } else if (const RecipeValue* dir = settings_.find(dir_key_)) {
       add_folder(*dir);
     }
-    std::vector<fs::path> paths;
-    for (const auto& [name, path] : found_)
-      paths.push_back(path);
-    return paths;
+    return std::move(found_);
   }
 
  private:
@@ -244,7 +258,7 @@ class Finder {
   void add_named(const RecipeValue& file) {
     const fs::path path = settings_.resolve(file);
     if (kind_.is_one(path)) {
-      add(file, files_key_, path);
+      add(file, files_key_, path, path_below(*file.text()));
     } else {
       settings_.complain(file, files_key_,
                          fmt::format("must name {}, found none at {}{}", kind_.wanted,
@@ -271,11 +285,16 @@ class Finder {
       warn(fmt::format("{}: not used of {}: {}", dir_key_, folder.string(), unused));
     }
     for (const fs::path& path : listing.found)
-      add(dir, dir_key_, path);
+      add(dir, dir_key_, path, path.lexically_relative(folder).generic_string());
   }
 
-  void add(const RecipeValue& giver, const std::string& key, const fs::path& path) {
-    const std::string name = kind_.name(path);
+  bool named_by_path() const {
+    return kind_.section == "models" && settings_.text("models.names") == "path";
+  }
+
+  void add(const RecipeValue& giver, const std::string& key, const fs::path& path,
+           const std::string& path_name) {
+    const std::string name = named_by_path() ? path_name : kind_.name(path);
     if (!fits_manifest(name)) {
       settings_.complain(
           giver, key,
@@ -287,28 +306,34 @@ class Finder {
     const auto [other, is_new] = found_.emplace(name, path);
     if (!is_new) {
       settings_.complain(giver, key,
-                         fmt::format("must give each name once, got {} at {} and {}", name,
+                         fmt::format("must give each name once, got {} at {} and {}{}", name,
                                      std::min(other->second, path).string(),
-                                     std::max(other->second, path).string()));
+                                     std::max(other->second, path).string(),
+                                     kind_.section == "models" && !named_by_path()
+                                         ? "; models.names = \"path\" tells them apart"
+                                         : ""));
     }
   }
 
   const AssetKind& kind_;
   Settings& settings_;
   std::string dir_key_, files_key_;
-  std::map<std::string, fs::path> found_;  // by name, which sorts them
+  std::map<std::string, fs::path> found_;
 };
 
 }  // namespace
 
-std::vector<fs::path> find_models(Settings& settings) {
-  return Finder(k_models, settings).find();
+std::vector<ModelFile> find_models(Settings& settings) {
+  std::vector<ModelFile> models;
+  for (const auto& [name, path] : Finder(k_models, settings).find())
+    models.push_back({name, path});
+  return models;
 }
 std::vector<fs::path> find_materials(Settings& settings) {
-  return Finder(k_materials, settings).find();
+  return paths_of(Finder(k_materials, settings).find());
 }
 std::vector<fs::path> find_environments(Settings& settings) {
-  return Finder(k_environments, settings).find();
+  return paths_of(Finder(k_environments, settings).find());
 }
 
 }  // namespace ds

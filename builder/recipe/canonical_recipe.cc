@@ -10,11 +10,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string list_of_names(const std::vector<fs::path>& paths) {
+std::string list_of(const std::vector<std::string>& names) {
   std::string list;
-  for (const fs::path& path : paths)
-    list += (list.empty() ? "" : ", ") + to_toml(path.filename().string());
+  for (const std::string& name : names)
+    list += (list.empty() ? "" : ", ") + to_toml(name);
   return "[" + list + "]";
+}
+
+std::string list_of_names(const std::vector<ModelFile>& models) {
+  std::vector<std::string> names;
+  for (const ModelFile& model : models)
+    names.push_back(model.name);
+  return list_of(names);
+}
+
+std::string list_of_names(const std::vector<fs::path>& paths) {
+  std::vector<std::string> names;
+  for (const fs::path& path : paths)
+    names.push_back(path.filename().string());
+  return list_of(names);
 }
 
 /// Integers where a number is wanted (49) become numbers (49.0), inside points too.

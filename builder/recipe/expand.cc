@@ -166,16 +166,17 @@ void expand(const Recipe& recipe, const std::function<void(ImageSpec&&)>& visit)
                           recipe.assign_environments, recipe.environments_per};
   Choice material_choice(recipe, materials), environment_choice(recipe, environments);
   const std::vector<Shared<std::string>> views(recipe.view_names.begin(), recipe.view_names.end());
-  std::vector<std::pair<std::string, const fs::path*>> models;
-  for (const fs::path& model : recipe.models)
-    models.emplace_back(model.filename().string(), &model);
+  std::vector<const ModelFile*> models;
+  for (const ModelFile& model : recipe.models)
+    models.push_back(&model);
   std::stable_sort(models.begin(), models.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+                   [](const auto* a, const auto* b) { return a->name < b->name; });
   ImageSpec image;
   image.engine = recipe.engine;
-  for (const auto& [name, file] : models) {
+  for (const ModelFile* model : models) {
+    const std::string& name = model->name;
     const ModelLabel label = label_of(recipe, name);
-    image.model_file = *file;
+    image.model_file = model->file;
     image.model_name = name;
     image.class_path = label.class_path;
     image.split = label.split;
@@ -223,8 +224,8 @@ void check_ids(const Recipe& recipe) {
          recipe.view_names.front(), text);
   };
   std::set<std::string> models;
-  for (const fs::path& model : recipe.models)
-    if (std::string name = model.filename().string(); !models.insert(name).second) refuse(name, "");
+  for (const ModelFile& model : recipe.models)
+    if (!models.insert(model.name).second) refuse(model.name, "");
   // Where one axis is "all", its names tell apart what it adds; of two, "a-b" and "c" read like "a"
   // and "b-c".
   if (recipe.assign_materials != Assign::all || recipe.assign_environments != Assign::all) return;

@@ -46,9 +46,13 @@ constexpr std::array k_keys = {
         "Folder of models: its {mesh endings} files. Either this or models.files must be given; "
         "with --set, the one given replaces the other"},
     KeySpec{"models.files", images, path_list, "", "", k_any, "", "",
-            "Model files, of any name. No two models may have one file name"},
+            "Model files, of any name. No two models may have one name"},
     KeySpec{"models.recursive", images, boolean, "", "false", k_any, "", "",
             "Look into the folders inside models.dir too"},
+    KeySpec{"models.names", images, choice, "", "\"file\"", k_any, R"("file" | "path")", "",
+            "What a model is called: its file's name, or its path in models.dir (of models.files "
+            "as it is "
+            "written, less leading ..), which tells chair/model.obj from mug/model.obj"},
     KeySpec{"models.up", scene, choice, "", "\"y\"", k_any, R"("y" | "z")", "",
             "The models' upward axis. \"y\" turns them by 90 degrees about x, so that Z is up; "
             "\"z\" leaves them"},

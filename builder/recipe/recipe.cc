@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
 #include <system_error>
 
@@ -145,14 +146,14 @@ void refuse_second_labels(const Settings& settings, const Recipe& recipe,
     const ModelLabel& label = labels.label(entry);
     return fmt::format("{} ({}, {})", labels.name(entry), label.class_path, label.split);
   };
-  for (const fs::path& model : recipe.models) {
-    const std::vector<std::size_t> entries = labels.find_all(model.filename().string());
+  for (const ModelFile& model : recipe.models) {
+    const std::vector<std::size_t> entries = labels.find_all(model.name);
     for (std::size_t i = 1; i < entries.size(); ++i)
       if (!used.contains(entries[i]) && labels.label(entries[i]) != labels.label(entries[0]))
         settings.complain(
             labels.label(entries[0]).split == "test" ? "classes.test" : "classes.train",
-            fmt::format("must list {} once, found {} and {}", model.filename().string(),
-                        text(entries[0]), text(entries[i])));
+            fmt::format("must list {} once, found {} and {}", model.name, text(entries[0]),
+                        text(entries[i])));
   }
 }
 
@@ -160,9 +161,9 @@ void refuse_second_labels(const Settings& settings, const Recipe& recipe,
 /// or the other.
 void find_ambiguous_entries(Recipe& recipe) {
   std::map<std::size_t, std::vector<std::string>> models;  // by entry
-  for (const fs::path& model : recipe.models)
-    for (const std::size_t entry : recipe.labels.find_all(model.filename().string()))
-      models[entry].push_back(model.filename().string());
+  for (const ModelFile& model : recipe.models)
+    for (const std::size_t entry : recipe.labels.find_all(model.name))
+      models[entry].push_back(model.name);
   ClassCoverage& coverage = recipe.coverage;
   for (const auto& [entry, names] : models) {
     if (names.size() < 2) continue;
@@ -177,14 +178,13 @@ void find_ambiguous_entries(Recipe& recipe) {
 void match_labels(const Settings& settings, Recipe& recipe) {
   std::set<std::size_t> used;
   std::vector<std::string> unlisted;
-  std::vector<fs::path> listed;
-  for (const fs::path& model : recipe.models) {
-    const std::string name = model.filename().string();
-    if (const auto label = recipe.labels.find_index(name)) {
+  std::vector<ModelFile> listed;
+  for (const ModelFile& model : recipe.models) {
+    if (const auto label = recipe.labels.find_index(model.name)) {
       used.insert(*label);
       listed.push_back(model);
     } else {
-      unlisted.push_back(name);
+      unlisted.push_back(model.name);
     }
   }
   ClassCoverage& coverage = recipe.coverage;

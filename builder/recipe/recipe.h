@@ -58,6 +58,12 @@ struct ClassCoverage {
   bool missing_allowed = false, unlisted_allowed = false, unshared_allowed = false;
 };
 
+/// A model's file, and what images, class files and the manifest call the model.
+struct ModelFile {
+  std::string name;
+  std::filesystem::path file;
+};
+
 /// A recipe read, checked and with every default filled in. Paths are absolute. What each key
 /// means, its unit and default: recipes/README.md.
 struct Recipe {
@@ -65,7 +71,7 @@ struct Recipe {
   std::string name;
   std::uint64_t seed = 0;
   std::string licence;
-  std::vector<std::filesystem::path> models;  ///< sorted by file name, which no two share
+  std::vector<ModelFile> models;  ///< sorted by name, which no two share
   /// Material files, sorted by name, which no two share.
   std::vector<std::filesystem::path> materials;
   std::vector<std::filesystem::path> environments;  ///< folders, sorted by name, which no two share
@@ -106,7 +112,7 @@ std::string canonical_recipe(const Recipe& recipe);
 /// One image to make. A pure function of the recipe.
 struct ImageSpec {
   std::string id;  ///< "human.ply/0": the path of the picture under images/, less its ending
-  Shared<std::string> model_name;  ///< file name, "human.ply"
+  Shared<std::string> model_name;  ///< "human.ply"; "chair/1/model.obj" with models.names = "path"
   Shared<std::filesystem::path> model_file, material_file, environment_folder;
   Shared<std::string> material_name;     ///< file name less its ending
   Shared<std::string> environment_name;  ///< folder name

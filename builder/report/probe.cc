@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
+#include <map>
 #include <memory>
 #include <set>
 
@@ -91,10 +92,12 @@ class ProbeBuild {
     dataset_.recipe.engine.spp = spp;
     dataset_.recipe.engine.target = target;
     // Identities do not depend on the other models: these alone expand to the same images.
-    std::set<std::filesystem::path> models;
+    std::map<std::string, std::filesystem::path> models;
     for (const ImageSpec& image : images)
-      models.insert(*image.model_file);
-    dataset_.recipe.models.assign(models.begin(), models.end());
+      models.emplace(*image.model_name, *image.model_file);
+    dataset_.recipe.models.clear();
+    for (const auto& [name, file] : models)
+      dataset_.recipe.models.push_back({.name = name, .file = file});
     dataset_.folder = folder / "out";
     dataset_.row.id = Hash128{0, static_cast<std::uint64_t>(spp)}.hex();
     dataset_.store = std::make_unique<Store>(folder / "store", disk_);

@@ -27,7 +27,10 @@ std::map<fs::path, const char*> input_folders(const Recipe& recipe) {
       found.try_emplace(file.parent_path(), what);
   };
   found.emplace(recipe.file.parent_path(), "the recipe");
-  add(recipe.models, "models");
+  std::vector<fs::path> models;
+  for (const ModelFile& model : recipe.models)
+    models.push_back(model.file);
+  add(models, "models");
   add(recipe.materials, "materials");
   for (const fs::path& folder : recipe.environments)
     found.try_emplace(folder, "an environment");
@@ -64,8 +67,9 @@ void check_no_input_file(const fs::path& file, std::string_view option, const Re
   std::error_code error;
   if (!fs::exists(file, error)) return;
   std::vector<fs::path> inputs{recipe.file};
-  for (const auto* list : {&recipe.models, &recipe.materials})
-    inputs.insert(inputs.end(), list->begin(), list->end());
+  for (const ModelFile& model : recipe.models)
+    inputs.push_back(model.file);
+  inputs.insert(inputs.end(), recipe.materials.begin(), recipe.materials.end());
   for (const auto& classes : {recipe.train_classes, recipe.test_classes})
     if (classes) inputs.push_back(*classes);
   for (const fs::path& input : inputs)

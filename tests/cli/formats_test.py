@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mesh formats, from folder to files: one body in each format gives the same pixels."""
+"""Mesh formats and models' names, from folder to files: one body in each format gives the same pixels."""
+import json
 import struct
 
 from harness import TinyCase, main
@@ -63,6 +64,34 @@ class FormatsTest(TinyCase):
                                        "files, which are not read"), 1, run)
         found = {m["model"]: m for m in self.run_it("models", self.recipe, "--json").json["models"]}
         self.assertEqual([found[name]["unused_materials"] for name in ("a.obj", "b.obj", "box.off")], [1, 2, 0])
+
+    def test_models_named_by_their_paths(self):
+        for place in ("chair/1", "chair/2", "mug/1"):
+            self.put(f"{place}/model.obj", obj(f"# {place}\n"))
+        recursive = ["--set", "models.recursive=true", *PLANES]
+        run = self.run_it("build", self.recipe, "-o", self.out, *recursive)
+        self.assertEqual(run.code, 2, run)
+        self.assertIn('models.names = "path" tells them apart', run.err)
+        named = [*recursive, "--set", 'models.names="path"']
+        self.assertEqual(self.build(*named)["built"], 5 * 4)
+        wanted = self.files("chair/2/model.obj")
+        self.assertEqual(len(wanted), 4 * 4)
+        records = [json.loads(line) for line in (self.out / "manifest/images.jsonl").read_text().splitlines()]
+        self.assertIn("chair/2/model.obj", {record["model"] for record in records})
+        self.assertIn("chair/2/model.obj/1",
+                      self.run_it("explain", self.out / "images/chair/2/model.obj/1.mask.png").out)
+        for meant in ("chair/2/model/1", "images/chair/2/model.obj/1", "x/chair/2/model.obj/1.png"):
+            self.assertIn("did you mean chair/2/model.obj/1?", self.run_it("explain", self.out, meant).err)
+        self.assertEqual(self.run_it("verify", self.out).code, 0)
+        # Without its neighbours, of which none has its file name any more, it keeps name and files.
+        for place in ("chair/1", "mug/1"):
+            (self.tiny / "models" / place / "model.obj").unlink()
+        self.assertEqual(self.build(*named)["built"], 0)
+        self.assertEqual(self.files("chair/2/model.obj"), wanted)
+        self.assertEqual(sorted(path.name for path in (self.out / "images").iterdir()),
+                         ["box.off", "chair", "tetra.ply"])
+        self.assertEqual([path.name for path in (self.out / "images/chair").iterdir()], ["2"])
+
 
 if __name__ == "__main__":
     main()

@@ -156,6 +156,25 @@ TEST(Labels, FindsByWholeNameThenStemThenBenchmarkNumber) {
   EXPECT_EQ(labels.size(), 7u);
 }
 
+TEST(Labels, FindModelsNamedByTheirPaths) {
+  const Labels labels(parse_classification("PSB 1\n3 6\nchair 0 2\na/1/model.obj\na/2/model\n"
+                                           "mug 0 2\nmug.off\ncup\nlamp 0 2\n17\na.b\n",
+                                           "train.cla"),
+                      std::nullopt);
+  const auto class_of = [&](std::string_view model) {
+    const auto label = labels.find(model);
+    return label ? label->class_path : "";
+  };
+  EXPECT_EQ(class_of("a/1/model.obj"), "chair");
+  EXPECT_EQ(class_of("a/1/model.ply"), "");
+  EXPECT_EQ(class_of("a/2/model.obj"), "chair");
+  EXPECT_EQ(class_of("b/2/model.obj"), "");
+  EXPECT_EQ(class_of("x/mug.off"), "mug");
+  EXPECT_EQ(class_of("x/y/cup.ply"), "mug");
+  EXPECT_EQ(class_of("0/m17/m17.off"), "lamp");
+  EXPECT_EQ(class_of("a.b/c"), "") << "a folder's dot begins no ending";
+}
+
 TEST(Labels, RefusesAModelInTrainAndTest) {
   const Classification train = parse_classification(k_good, "train.cla");
   const Classification test =

@@ -19,7 +19,7 @@ Recipe small_recipe(int model_count = 3, int view_count = 2) {
   Recipe recipe;
   recipe.seed = 5;
   for (int i = 0; i < model_count; ++i)
-    recipe.models.push_back("/models/m" + std::to_string(i) + ".off");
+    recipe.models.push_back({fmt::format("m{}.off", i), fmt::format("/models/m{}.off", i)});
   recipe.materials = {"/a/clay.mat", "/a/glass.mat", "/a/steel.mat"};
   recipe.environments = {"/e/attic", "/e/garden"};
   for (int i = 0; i < view_count; ++i) {
@@ -89,8 +89,8 @@ TEST(Expand, AddingAModelChangesNoOtherImage) {
       before.assign_environments = environments;
       before.split_test_fraction = 0.5;
       Recipe after = before;
-      after.models.insert(after.models.begin(), "/models/a-first.off");
-      after.models.push_back("/models/z-last.off");
+      after.models.insert(after.models.begin(), {"a-first.off", "/models/a-first.off"});
+      after.models.push_back({"z-last.off", "/models/z-last.off"});
       expect_kept(before, after);
     }
   }
@@ -192,7 +192,7 @@ TEST(Expand, CountsItsImagesBeforeItMakesThem) {
 
 TEST(Expand, RefusesTwoImagesOfOneName) {
   Recipe recipe = small_recipe(1, 1);
-  recipe.models.push_back("/elsewhere/m0.off");
+  recipe.models.push_back({"m0.off", "/elsewhere/m0.off"});
   EXPECT_THROW(expand(recipe), Error);
   recipe = small_recipe(1, 1);
   recipe.assign_materials = recipe.assign_environments = Assign::all;

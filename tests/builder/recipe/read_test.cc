@@ -22,6 +22,13 @@ std::vector<std::string> names(const std::vector<fs::path>& paths) {
   return all;
 }
 
+std::vector<std::string> names(const std::vector<ModelFile>& models) {
+  std::vector<std::string> all;
+  for (const ModelFile& model : models)
+    all.push_back(model.name);
+  return all;
+}
+
 class RecipeReadTest : public testing::Test {
  protected:
   RecipeFolder folder_;
@@ -33,7 +40,7 @@ TEST_F(RecipeReadTest, FindsAssetsAndFillsInDefaults) {
   EXPECT_THAT(names(recipe.models), ElementsAre("car.ply", "mug.off", "tree.PLY"));
   EXPECT_THAT(names(recipe.materials), ElementsAre("clay.mat", "glass.mat", "steel.mat"));
   EXPECT_THAT(names(recipe.environments), ElementsAre("attic", "garden"));
-  EXPECT_EQ(recipe.models[0], folder_.path() / "models/car.ply");
+  EXPECT_EQ(recipe.models[0].file, folder_.path() / "models/car.ply");
   EXPECT_TRUE(recipe.file.is_absolute());
   EXPECT_EQ(recipe.cameras.size(), 14u);
   EXPECT_EQ(recipe.view_names.back(), "13");
@@ -216,7 +223,8 @@ TEST_F(RecipeReadTest, TakesPathsFromTheRecipesFolderAndFromTheCurrentOneInSet) 
   const Recipe recipe = folder_.read("", {"models.dir=more"});
   const std::string missing = folder_.findings("", {"materials.dir=more"});
   fs::current_path(before);
-  EXPECT_EQ(recipe.models, std::vector{other.path() / "more/vase.ply"});
+  ASSERT_EQ(recipe.models.size(), 1u);
+  EXPECT_EQ(recipe.models[0].file, other.path() / "more/vase.ply");
   EXPECT_EQ(recipe.materials[0], folder_.path() / "materials/clay.mat");
   EXPECT_EQ(missing, "--set materials.dir: must hold a .mat file, found none in " +
                          (other.path() / "more").string());
@@ -250,12 +258,42 @@ TEST_F(RecipeReadTest, RefusesTwoModelsOfOneName) {
       folder_.findings("", {"models.files=[\"" + (folder_.path() / "models/car.ply").string() +
                             "\", \"" + (folder_.path() / "more/car.ply").string() + "\"]"}),
       "--set models.files: must give each name once, got car.ply at models/car.ply and "
-      "more/car.ply");
+      "more/car.ply; models.names = \"path\" tells them apart");
   folder_.add("models/deeper/mug.off");
   EXPECT_EQ(folder_.findings(""), "");
   EXPECT_EQ(folder_.findings("models.recursive = true"),
             "r.toml:1:14: models.dir must give each name once, got mug.off at "
-            "models/deeper/mug.off and models/mug.off");
+            "models/deeper/mug.off and models/mug.off; models.names = \"path\" tells them apart");
+}
+
+TEST_F(RecipeReadTest, NamesModelsByTheirPathsWhereTheRecipeWantsIt) {
+  const std::string wanted = "models.names = \"path\"\n";
+  folder_.add("models/chair/1/model.obj");
+  folder_.add("models/chair/2/model.obj");
+  folder_.add("models/mug/1/model.obj");
+  const auto by_path = [&] {
+    return names(folder_.read(wanted + "models.recursive = true").models);
+  };
+  EXPECT_THAT(by_path(), ElementsAre("car.ply", "chair/1/model.obj", "chair/2/model.obj", "mug.off",
+                                     "mug/1/model.obj", "tree.PLY"));
+  // Adding or removing others renames none, even where one is then the only one of its file name.
+  fs::remove_all(folder_.path() / "models/chair/1");
+  fs::remove_all(folder_.path() / "models/mug");
+  EXPECT_THAT(by_path(), ElementsAre("car.ply", "chair/2/model.obj", "mug.off", "tree.PLY"));
+  EXPECT_THAT(names(folder_.read("models.recursive = true").models),
+              ElementsAre("car.ply", "model.obj", "mug.off", "tree.PLY"));
+  // Files given one by one are called as they are written, below the dataset's folder.
+  const std::string up = "../" + folder_.path().filename().string() + "/models/./mug.off";
+  const Recipe files = folder_.read_whole(
+      "models.files = [\"models/car.ply\", \"" + up + "\", \"" +
+      (folder_.path() / "models/tree.PLY").string() +
+      "\"]\nmaterials.dir = \"materials\"\nenvironments.dir = \"places\"\n" + wanted);
+  const std::string folder = folder_.path().filename().string();
+  EXPECT_THAT(names(files.models), testing::UnorderedElementsAre(
+                                       "models/car.ply", folder + "/models/mug.off",
+                                       folder_.path().string().substr(1) + "/models/tree.PLY"));
+  for (const ModelFile& model : files.models)
+    EXPECT_TRUE(fs::exists(model.file)) << model.name;
 }
 
 /// What reading warns of, the folder's own name taken out.
