@@ -220,15 +220,6 @@ bool all_digits(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == text.npos;
 }
 
-void add_labels(const Classification& from, const char* split,
-                std::vector<std::pair<std::string, ModelLabel>>& labels) {
-  for (std::size_t i = 0; i < from.classes.size(); ++i) {
-    const std::string path = from.path(static_cast<int>(i));
-    for (const std::string& model : from.classes[i].models)
-      labels.push_back({model, {path, split}});
-  }
-}
-
 void check_disjoint(const Classification& train, const Classification& test) {
   std::map<std::string_view, int> lines;
   for (const ModelClass& c : train.classes) {
@@ -277,11 +268,43 @@ Classification read_classification(const std::filesystem::path& file) {
   return parse_classification(read_text_file(file), file.string());
 }
 
+std::vector<LabelledModel> labelled_models(const Classification& from, const std::string& split) {
+  std::vector<LabelledModel> models;
+  for (std::size_t i = 0; i < from.classes.size(); ++i) {
+    const std::string path = from.path(static_cast<int>(i));
+    for (const std::string& model : from.classes[i].models)
+      models.push_back({model, {path, split}});
+  }
+  return models;
+}
+
 Labels::Labels(const std::optional<Classification>& train,
                const std::optional<Classification>& test) {
   if (train && test) check_disjoint(*train, *test);
-  if (train) add_labels(*train, "train", sorted_);
-  if (test) add_labels(*test, "test", sorted_);
+  if (train) add(labelled_models(*train, "train"));
+  if (test) add(labelled_models(*test, "test"));
+}
+
+Labels::Labels(const std::vector<LabelledModel>& models) {
+  add(models);
+}
+
+bool Labels::has_splits() const {
+  return std::any_of(sorted_.begin(), sorted_.end(),
+                     [](const auto& entry) { return !entry.second.split.empty(); });
+}
+
+std::vector<std::string> Labels::class_paths() const {
+  std::set<std::string> paths;
+  for (const auto& [model, label] : sorted_)
+    for (std::string path = label.class_path; !path.empty() && paths.insert(path).second;)
+      path.resize(path.rfind('/') == path.npos ? 0 : path.rfind('/'));
+  return {paths.begin(), paths.end()};
+}
+
+void Labels::add(const std::vector<LabelledModel>& models) {
+  for (const auto& [model, label] : models)
+    sorted_.emplace_back(model, label);
   std::sort(sorted_.begin(), sorted_.end(),
             [](const auto& a, const auto& b) { return a.first < b.first; });
 }

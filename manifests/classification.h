@@ -47,10 +47,18 @@ Classification parse_classification(std::string_view text, const std::string& na
 Classification read_classification(const std::filesystem::path& file);
 
 struct ModelLabel {
-  std::string class_path;  ///< "vehicle/car"
-  std::string split;       ///< "train" or "test"
+  std::string class_path;  ///< "vehicle/car"; "" for none
+  std::string split;       ///< "train" or "test"; "" for none
   bool operator==(const ModelLabel&) const = default;
 };
+
+/// A model as a list of models calls it, and what it says of it.
+struct LabelledModel {
+  std::string model;
+  ModelLabel label;
+};
+/// Those of a class file, all in one split.
+std::vector<LabelledModel> labelled_models(const Classification& from, const std::string& split);
 
 /// Classes that have models in one of two class files and none in the other: what is left where a
 /// class was renamed in one of them.
@@ -69,6 +77,9 @@ class Labels {
   /// be absent.
   Labels(const std::optional<Classification>& train, const std::optional<Classification>& test);
 
+  /// Of a list that names no model twice.
+  explicit Labels(const std::vector<LabelledModel>& models);
+
   /// A class file's "mug.ply" means the file of that name, "mug" any file of that stem, "1298" also
   /// "m1298.off" (the benchmark's own naming). A model named by its path ("a/mug.ply") is meant by that
   /// path, with or without its ending, and by what means its file. Where several would do, the first in
@@ -82,8 +93,13 @@ class Labels {
   /// What the class file calls the entry of that index.
   const std::string& name(std::size_t index) const { return sorted_.at(index).first; }
   const ModelLabel& label(std::size_t index) const { return sorted_.at(index).second; }
+  /// Whether any entry has a split.
+  bool has_splits() const;
+  /// The paths of all classes that entries have, and of those above them, sorted, each once.
+  std::vector<std::string> class_paths() const;
 
  private:
+  void add(const std::vector<LabelledModel>& models);
   std::optional<std::size_t> index_of(std::string_view key) const;
 
   std::vector<std::pair<std::string, ModelLabel>> sorted_;  // by key

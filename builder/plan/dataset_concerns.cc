@@ -69,6 +69,7 @@ void look_at_labels(std::vector<Concern>& concerns, const Recipe& recipe,
 void look_at_splits(std::vector<Concern>& concerns, const Recipe& recipe,
                     const std::vector<ImageFacts>& images, const std::vector<ImageFacts>& pending) {
   const bool by_chance = recipe.split_test_fraction.has_value();
+  const bool by_table = !recipe.classes_from.empty() && recipe.labels.has_splits();
   Concern& empty = concern(concerns, "splits_empty");
   const auto look_at = [&](const char* split, bool wanted) {
     if (!wanted) return;
@@ -78,8 +79,8 @@ void look_at_splits(std::vector<Concern>& concerns, const Recipe& recipe,
         std::none_of(pending.begin(), pending.end(), is_of))
       add_example(empty, split);
   };
-  look_at("train", by_chance || recipe.train_classes);
-  look_at("test", by_chance || recipe.test_classes);
+  look_at("train", by_chance || recipe.train_classes || by_table);
+  look_at("test", by_chance || recipe.test_classes || by_table);
 }
 
 PixelCounts count_file(const std::filesystem::path& file, const std::string& kind) {

@@ -209,10 +209,10 @@ std::string path_below(const std::string& written) {
   return below.generic_string();
 }
 
-std::vector<fs::path> paths_of(const std::map<std::string, fs::path>& by_name) {
+std::vector<fs::path> paths_of(const std::map<std::string, ModelFile>& by_name) {
   std::vector<fs::path> paths;
-  for (const auto& [name, path] : by_name)
-    paths.push_back(path);
+  for (const auto& [name, asset] : by_name)
+    paths.push_back(asset.file);
   return paths;
 }
 
@@ -225,7 +225,7 @@ class Finder {
         files_key_(std::string(kind.section) + ".files") {}
 
   /// By name, which sorts them.
-  std::map<std::string, fs::path> find() {
+  std::map<std::string, ModelFile> find() {
     choose_key();
     if (const RecipeValue* files = settings_.find(files_key_)) {
       for (const RecipeValue& file : *files->array())
@@ -293,8 +293,8 @@ class Finder {
   }
 
   void add(const RecipeValue& giver, const std::string& key, const fs::path& path,
-           const std::string& path_name) {
-    const std::string name = named_by_path() ? path_name : kind_.name(path);
+           const std::string& below) {
+    const std::string name = named_by_path() ? below : kind_.name(path);
     if (!fits_manifest(name)) {
       settings_.complain(
           giver, key,
@@ -303,12 +303,12 @@ class Finder {
               path.string()));
       return;
     }
-    const auto [other, is_new] = found_.emplace(name, path);
+    const auto [other, is_new] = found_.emplace(name, ModelFile{name, path, below});
     if (!is_new) {
       settings_.complain(giver, key,
                          fmt::format("must give each name once, got {} at {} and {}{}", name,
-                                     std::min(other->second, path).string(),
-                                     std::max(other->second, path).string(),
+                                     std::min(other->second.file, path).string(),
+                                     std::max(other->second.file, path).string(),
                                      kind_.section == "models" && !named_by_path()
                                          ? "; models.names = \"path\" tells them apart"
                                          : ""));
@@ -318,15 +318,15 @@ class Finder {
   const AssetKind& kind_;
   Settings& settings_;
   std::string dir_key_, files_key_;
-  std::map<std::string, fs::path> found_;
+  std::map<std::string, ModelFile> found_;
 };
 
 }  // namespace
 
 std::vector<ModelFile> find_models(Settings& settings) {
   std::vector<ModelFile> models;
-  for (const auto& [name, path] : Finder(k_models, settings).find())
-    models.push_back({name, path});
+  for (const auto& [name, model] : Finder(k_models, settings).find())
+    models.push_back(model);
   return models;
 }
 std::vector<fs::path> find_materials(Settings& settings) {

@@ -51,6 +51,8 @@ std::optional<std::string> own_text(const KeySpec& key, const Recipe& recipe) {
     return to_toml(recipe.train_classes->filename().string());
   if (key.name == "classes.test" && recipe.test_classes)
     return to_toml(recipe.test_classes->filename().string());
+  if (key.name == "classes.from" && !recipe.classes_from.empty())
+    return to_toml(recipe.classes_from);
   return std::nullopt;
 }
 

@@ -126,11 +126,11 @@ std::span<const Asset> Choice::of_view(std::size_t view) const {
 }
 
 ModelLabel label_of(const Recipe& recipe, const std::string& model) {
-  if (const auto label = recipe.labels.find(model)) return *label;
-  if (!recipe.split_test_fraction) return {};
+  const ModelLabel label = recipe.labels.find(model).value_or(ModelLabel{});
+  if (!recipe.split_test_fraction) return label;
   const double share =
       static_cast<double>(top_53_bits(seeded_hash(recipe.seed, k_for_split, {model}))) * 0x1p-53;
-  return {"", share < *recipe.split_test_fraction ? "test" : "train"};
+  return {label.class_path, share < *recipe.split_test_fraction ? "test" : "train"};
 }
 
 /// What stands behind model and view in an id.

@@ -77,12 +77,18 @@ constexpr std::array k_keys = {
             "and the key counts as unset where models.files is used instead"},
     KeySpec{"classes.test", manifest, path, "", "", k_any, "", "",
             "Class file of the test models, likewise"},
+    KeySpec{"classes.from", manifest, path, "", "", k_any, "", "",
+            "Where classes come from instead: \"folder\" (a model's class is the folder of "
+            "models.dir it "
+            "lies in) or \"folders\" (all folders down to it), or a file, .csv with columns name, "
+            "class "
+            "and split, or .cla: see Classes and splits"},
     KeySpec{"classes.split.test", manifest, number, "", "", between(0, 1), "", "",
-            "Share of the models to put into the test split, where there are no class files. "
+            "Share of the models to put into the test split, where nothing else says what is test. "
             "Without it there is no split"},
     KeySpec{"classes.split.by", manifest, choice, "", "\"model\"", k_any, "\"model\"", "",
             "What is split: all images of a model stay together, chosen by a hash of dataset.seed "
-            "and the model's file name"},
+            "and the model's name"},
     KeySpec{"classes.missing", manifest, choice, "", "\"ignore\"", k_any, R"("ignore" | "error")",
             "", "A model that a class file lists and that has no file: count it, or fail"},
     KeySpec{"classes.unlisted", images, choice, "", "\"keep\"", k_any,

@@ -62,6 +62,7 @@ struct ClassCoverage {
 struct ModelFile {
   std::string name;
   std::filesystem::path file;
+  std::string below = {};  ///< its path in models.dir; of models.files as it is written there
 };
 
 /// A recipe read, checked and with every default filled in. Paths are absolute. What each key
@@ -77,8 +78,11 @@ struct Recipe {
   std::vector<std::filesystem::path> environments;  ///< folders, sorted by name, which no two share
   NormaliseOptions normalise;
   std::optional<std::filesystem::path> train_classes, test_classes;
-  Labels labels;                         ///< of both class files
-  std::vector<std::string> class_paths;  ///< of both class files, sorted
+  std::string
+      classes_from;  ///< "folder", "folders" or a file's name; "" where classes.from is not given
+  std::optional<std::filesystem::path> class_table;  ///< that file
+  Labels labels;                                     ///< of both class files, or of classes.from
+  std::vector<std::string> class_paths;              ///< of the same, sorted
   ClassCoverage coverage;
   /// Where there are no class files and a split is wanted.
   std::optional<double> split_test_fraction;

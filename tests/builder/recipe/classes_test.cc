@@ -129,5 +129,55 @@ TEST_F(RecipeClassesTest, ExcludeASplitByHash) {
             "r.toml:4:36: classes.split.by must be \"model\", got \"class\"");
 }
 
+TEST_F(RecipeClassesTest, ComeFromFolders) {
+  const RecipeFolder folder;
+  for (const char* model : {"vehicle/car/train/a.off", "vehicle/car/test/b.off", "mug/c.off"})
+    folder.add(std::string("models/") + model);
+  const std::string recursive = "models.recursive = true\n";
+  const Recipe first = folder.read(recursive + "classes.from = \"folder\"");
+  EXPECT_EQ(labels_of(first).at("a.off"), "vehicle train");
+  EXPECT_EQ(labels_of(first).at("b.off"), "vehicle test");
+  EXPECT_EQ(labels_of(first).at("c.off"), "mug ");
+  EXPECT_EQ(labels_of(first).at("car.ply"), " ");
+  EXPECT_EQ(first.coverage.unlisted, 3u) << "those that lie in no folder";
+  EXPECT_THAT(first.class_paths, ElementsAre("mug", "vehicle"));
+  const Recipe all = folder.read(recursive + "classes.from = \"folders\"\nmodels.names = \"path\"");
+  EXPECT_EQ(labels_of(all).at("vehicle/car/train/a.off"), "vehicle/car train");
+  EXPECT_THAT(all.class_paths, ElementsAre("mug", "vehicle", "vehicle/car"));
+  EXPECT_EQ(folder.findings("classes.from = \"folder\""),
+            "r.toml:4:16: classes.from wants models.dir and models.recursive = true: classes are "
+            "the folders in it");
+}
+
+TEST_F(RecipeClassesTest, ComeFromATableOrOneClassFile) {
+  folder_.add("c.csv", "name,class,split\ncar,vehicle/car,test\nmug.off,mug,\ngone,mug,train\n");
+  const Recipe recipe = folder_.read("classes.from = \"c.csv\"");
+  EXPECT_EQ(labels_of(recipe).at("car.ply"), "vehicle/car test");
+  EXPECT_EQ(labels_of(recipe).at("mug.off"), "mug ");
+  EXPECT_EQ(recipe.coverage.missing, 1u);
+  EXPECT_EQ(recipe.coverage.unlisted, 1u);
+  EXPECT_THAT(canonical_recipe(recipe), HasSubstr("classes.from = \"c.csv\"\n"));
+  // Where nothing says what is test, chance may.
+  const std::string half = "classes.split.test = 1\n";
+  const Recipe cla = folder_.read("classes.from = \"train.cla\"\n" + half);
+  EXPECT_EQ(labels_of(cla).at("car.ply"), "thing/vehicle test");
+  EXPECT_THAT(folder_.findings("classes.from = \"c.csv\"\n" + half),
+              HasSubstr("classes.split.test must not be given where classes.from says"));
+}
+
+TEST_F(RecipeClassesTest, ComeFromOnePlaceOnly) {
+  EXPECT_THAT(
+      folder_.findings(both("classes.from = \"train.cla\"")),
+      testing::AllOf(HasSubstr("classes.from must not be given together with classes.train"),
+                     HasSubstr("classes.from must not be given together with classes.test")));
+  EXPECT_THAT(folder_.findings("classes.from = \"folds\""),
+              HasSubstr("classes.from must be \"folder\" or \"folders\" or a .csv file or a .cla "
+                        "file, got \"folds\""));
+  EXPECT_THAT(folder_.findings("classes.from = \"no.csv\""),
+              HasSubstr("classes.from must name a file, found none at no.csv"));
+  folder_.add("c.csv", "name\n");
+  EXPECT_THAT(folder_.findings("classes.from = \"c.csv\""), HasSubstr("c.csv:1: must name the"));
+}
+
 }  // namespace
 }  // namespace ds

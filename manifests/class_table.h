@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "manifests/classification.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ds {
+
+/// A table of models and their classes, as comma-separated values (RFC 4180: fields may be in double
+/// quotes, which are doubled inside them; lines end with LF, CRLF or CR):
+///
+///   file   = header {row}
+///   header = the names of the columns: "name" and "class", and "split" where there is one; in any order
+///   name   = what a class file may call a model: file name, stem, number, path (Labels)
+///   class  = from the root down, with "/" between: "vehicle/car"; empty: none
+///   split  = "train", "test" or empty
+///
+/// Further columns are not read, nor are empty lines. Throws Error(asset), all findings with file:line: a
+/// column missing or there twice, a row of another length, a name that is empty or stands twice, a class
+/// with an empty part or one of 0 . .., another split, a quote that is not closed.
+std::vector<LabelledModel> parse_class_table(std::string_view text, const std::string& name);
+
+}  // namespace ds
