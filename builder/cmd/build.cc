@@ -127,7 +127,9 @@ nlohmann::json to_json(const std::vector<Lacking>& all) {
   return list;
 }
 
-int dry_run(const Arguments& arguments, const Plan& plan, const BuildOptions& options) {
+int dry_run(const Arguments& arguments, const Recipe& recipe, const Plan& plan,
+            const BuildOptions& options) {
+  const std::vector<Concern> concerns = tell_planned_concerns(recipe, plan);
   print_plan(arguments.json ? Stream::people : Stream::result, plan, arguments.verbose);
   const PlanCounts counts = count(plan);
   if (arguments.json)
@@ -138,6 +140,7 @@ int dry_run(const Arguments& arguments, const Plan& plan, const BuildOptions& op
                 {"stale", counts.stale},
                 {"manifest", to_json(plan.manifest)},
                 {"edited_files", plan.edited.size()},
+                {"concerns", to_json(concerns)},
                 {"traced_samples", 0},
                 {"seconds", seconds_since(options.started)}});
   else {
@@ -161,7 +164,7 @@ int run_build(const Arguments& arguments) {
     Inputs inputs(*dataset.database, stamps_of(arguments));
     const Plan plan = make_plan(dataset, inputs, arguments.force, shard);
     warn_of_mended(plan);
-    return dry_run(arguments, plan, build_options);
+    return dry_run(arguments, dataset.recipe, plan, build_options);
   }
   Dataset dataset = open_dataset(arguments.request(), Access::build, disk);
   const auto waits_for = [&](const std::string& who) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/concerns_text.h"
 
+#include "builder/plan/dataset_concerns.h"
 #include "tracer/base/error.h"
 #include "tracer/base/log.h"
 #include "tracer/base/streams.h"
@@ -107,6 +108,24 @@ std::size_t tell_concerns(const std::vector<Concern>& concerns, const Recipe& re
         "= "
         "\"exr\" tells it\n");
   return errors;
+}
+
+std::vector<Concern> tell_planned_concerns(const Recipe& recipe, const Plan& plan) {
+  std::vector<ImageFacts> images;
+  images.reserve(plan.images.size());
+  for (const PlannedImage& image : plan.images)
+    if (!image.error)
+      images.push_back({image.spec.id,
+                        *image.spec.model_name,
+                        *image.spec.class_path,
+                        *image.spec.split,
+                        0,
+                        {}});
+  const std::vector<Concern> concerns = dataset_concerns(recipe, plan.concerns, {}, images);
+  for (const Concern& concern : concerns)
+    if (concern.count > 0 && !text_of(concern).said && !is_allowed(concern, recipe.coverage))
+      warn(to_text(concern) + way_out(concern));
+  return concerns;
 }
 
 }  // namespace ds

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "builder/plan/plan.h"
 #include "builder/recipe/recipe.h"
 #include "manifests/concerns.h"
 
@@ -21,5 +22,9 @@ nlohmann::json to_json(const std::vector<Concern>& concerns);
 /// recipe itself allows (classes.missing, classes.unlisted) as plain lines; and what cannot be told
 /// without masks. Returns how many were told as errors.
 std::size_t tell_concerns(const std::vector<Concern>& concerns, const Recipe& recipe, bool strict);
+
+/// Warns of what a plan knows already: models and class files that do not fit each other, names that
+/// are one on some disks, classes and splits that no image will be of. Returns them all.
+std::vector<Concern> tell_planned_concerns(const Recipe& recipe, const Plan& plan);
 
 }  // namespace ds

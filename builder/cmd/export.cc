@@ -77,10 +77,14 @@ ExportResult run(const ExportRequest& request) {
 
 int run_export(const Arguments& arguments) {
   const std::filesystem::path folder = dataset_folder(arguments.request());
-  if (const std::string why = behind(arguments); !why.empty())
-    warn(fmt::format("{}: {}", folder.string(), why));
-  const ExportRequest request{folder,           arguments.export_folder, arguments.format,
-                              arguments.splits, filters_of(arguments),   arguments.copy};
+  ExportRequest request{folder,
+                        arguments.export_folder,
+                        arguments.format,
+                        arguments.splits,
+                        filters_of(arguments),
+                        arguments.copy,
+                        {}};
+  if (const std::string why = behind(arguments); !why.empty()) request.notes.push_back(why);
   const ExportResult result = run(request);
   for (const std::string& note : result.notes)
     warn(note);

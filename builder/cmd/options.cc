@@ -56,18 +56,13 @@ void add_word(CLI::App& verb, const char* name, std::string& to,
   verb.add_option_function<std::string>(name, read, help)->type_name("WHAT");
 }
 
-std::vector<std::string_view> check_names() {
-  std::vector<std::string_view> names;
-  for (const Check& check : checks())
-    names.emplace_back(check.name);
-  return names;
-}
-
-std::vector<std::string_view> format_names() {
-  std::vector<std::string_view> names;
-  for (const ExporterType& type : exporter_types())
-    names.emplace_back(type.name);
-  return names;
+/// "coco (COCO: annotations ...); csv (...)".
+template <typename Rows>
+std::string names_and_help(const Rows& rows) {
+  std::string text;
+  for (const auto& row : rows)
+    text += fmt::format("{}{} ({})", text.empty() ? "" : "; ", row.name, row.help);
+  return text;
 }
 
 }  // namespace
@@ -171,7 +166,7 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
                  "trace N images again and compare their bytes");
       return;
     case Option::format:
-      verb.add_option("--format", to.format, fmt::format("{}", fmt::join(format_names(), ", ")))
+      verb.add_option("--format", to.format, names_and_help(exporter_types()))
           ->required()
           ->type_name("FORMAT");
       return;
@@ -187,16 +182,17 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
           ->type_name("SPLIT");
       return;
     case Option::filters:
-      verb.add_option("--filter", to.filters,
-                      "images only whose class, model, material, environment or view matches, as "
-                      "class=vehicle/* (repeatable: of one key any, of several all)")
+      verb.add_option(
+              "--filter", to.filters,
+              "images only whose class, model, material, environment or view matches, as "
+              "class=vehicle/* (repeatable: of one key any, of several all; * is any text, ? any "
+              "character; a class means those below it too, a model its file's stem)")
           ->allow_extra_args(false)
           ->type_name("KEY=PATTERN");
       return;
     case Option::only:
-      verb.add_option(
-              "--only", to.only,
-              fmt::format("run this check only (repeatable): {}", fmt::join(check_names(), ", ")))
+      verb.add_option("--only", to.only,
+                      "run this check only (repeatable): " + names_and_help(checks()))
           ->allow_extra_args(false)
           ->type_name("CHECK");
       return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/plan.h"
 
+#include "builder/cmd/concerns_text.h"
 #include "builder/cmd/forecast_text.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/stop_signal.h"
@@ -170,7 +171,9 @@ int run_plan(const Arguments& arguments) {
   Inputs inputs(*dataset.database, stamps_of(arguments));
   const Plan plan = make_plan(dataset, inputs, wish.all_images(), shard);
   const PlanCounts counts = count(plan);
+  const std::vector<Concern> concerns = tell_planned_concerns(dataset.recipe, plan);
   nlohmann::json object = arguments.json ? plan_json(plan, counts) : nlohmann::json();
+  if (arguments.json) object["concerns"] = to_json(concerns);
   if (!arguments.json) {
     if (!wish.any) print_plan(Stream::result, plan, arguments.verbose);
     say(Stream::result, "{}\n", summary(counts));

@@ -104,7 +104,7 @@ std::string cause_of(const Finding& finding) {
   return with_replaced(finding.what, finding.path, "*");
 }
 
-void print_findings(const VerifyResult& result, bool all) {
+void print_findings(const VerifyResult& result, bool all, bool exported) {
   Groups groups;
   for (const Finding& finding : result.findings) {
     const std::string kind = to_string(finding.kind);
@@ -115,10 +115,11 @@ void print_findings(const VerifyResult& result, bool all) {
       groups.add(cause_of(finding), fmt::format("{}: {}", kind, finding.path), line);
   }
   groups.print(Stream::result, false);
-  say(Stream::result, "{} images, {} files: ", result.images, result.files);
+  say(Stream::result, "{}{} files: ", exported ? "" : fmt::format("{} images, ", result.images),
+      result.files);
   if (result.rerendered > 0) say(Stream::result, "{} images traced again: ", result.rerendered);
   if (result.findings.empty())
-    say(Stream::result, "all as the manifest says\n");
+    say(Stream::result, "all as the {}\n", exported ? "export's checksums say" : "manifest says");
   else
     say(Stream::result, "{} difference{}\n", result.findings.size(),
         result.findings.size() == 1 ? "" : "s");
@@ -140,7 +141,7 @@ int run_verify(const Arguments& arguments) {
   }
   std::string not_checked;
   if (exported)
-    not_checked = "it is an export";
+    not_checked = "";
   else if (!result.has_manifest)
     not_checked = "the manifest cannot be read; the next build writes it anew";
   else if (std::filesystem::is_directory(arguments.target))
@@ -161,7 +162,7 @@ int run_verify(const Arguments& arguments) {
          {"not_checked", not_checked.empty() ? nlohmann::json() : nlohmann::json(not_checked)},
          {"findings", findings}});
   } else {
-    print_findings(result, arguments.verbose);
+    print_findings(result, arguments.verbose, exported);
     if (!not_checked.empty()) print_not_checked(not_checked);
     print_unfinished(unfinished);
   }

@@ -289,6 +289,12 @@ Dataset open_folder(const DatasetRequest& request, Access access, Disk& disk) {
   Dataset dataset;
   dataset.folder = normal(request.target);
   const std::optional<Pointer> pointer = read_pointer(dataset.folder);
+  if (!pointer && has_lost_state(dataset.folder))
+    fail(ErrorKind::usage,
+         "{0}: its .dsbuild is missing, which says what made it: build the recipe with -o {0} "
+         "--adopt "
+         "(verify, check and export need no .dsbuild)",
+         request.target.string());
   if (!pointer)
     fail(ErrorKind::usage, "{}: wanted a recipe or a folder that dsbuild built{}",
          request.target.string(), recipe_meant(dataset.folder));

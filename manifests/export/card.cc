@@ -26,34 +26,31 @@ std::string size_category(std::uint64_t images) {
                               : "1M<n<10M";
 }
 
-/// Every licence by its SPDX id; "" for a text that is none of SPDX's.
-std::set<std::string> spdx_ids(const DatasetRecord& dataset) {
-  std::set<std::string> ids;
-  for (const LicenceRecord& licence : dataset.licences)
-    ids.insert(licence.spdx);
-  return ids;
-}
-
 /// As YAML, which JSON's strings are.
 std::string quoted(const std::string& text) {
   return canonical_json(text);
 }
 
+/// The hub's id only of what the recipe says of the whole dataset: licences beside some of its assets are
+/// no licence of its pictures.
+std::string licence_lines(const DatasetRecord& dataset) {
+  std::string text;
+  const bool is_id = !dataset.licence.empty() && dataset.licence.find(' ') == dataset.licence.npos;
+  if (is_id)
+    text = fmt::format("license: {}\n", in_lower_case(dataset.licence));
+  else
+    text = fmt::format("license: other\nlicense_name: {}\n",
+                       quoted(dataset.licence.empty() ? "not stated" : dataset.licence));
+  if (!is_id && !dataset.licences.empty()) text += "license_link: LICENSES\n";
+  return text;
+}
+
 std::string front_matter(const ExportInput& input) {
-  const DatasetRecord& dataset = input.dataset;
-  const std::set<std::string> ids = spdx_ids(dataset);
   std::uint64_t images = 0;
   for (const auto& [split, count] : input.splits)
     images += count;
-  std::string text = "---\n";
-  const bool one = ids.size() == 1 && !ids.begin()->empty() &&
-                   (dataset.licence.empty() || dataset.licence == *ids.begin());
-  if (one)
-    text += fmt::format("license: {}\n", in_lower_case(*ids.begin()));
-  else
-    text += fmt::format("license: other\nlicense_name: {}\nlicense_link: LICENSES\n",
-                        quoted(dataset.licence.empty() ? "see LICENSES" : dataset.licence));
-  text += fmt::format("pretty_name: {}\n", quoted(dataset.name));
+  std::string text = "---\n" + licence_lines(input.dataset);
+  text += fmt::format("pretty_name: {}\n", quoted(input.dataset.name));
   text += "task_categories:\n- image-classification\n";
   if (input.has("mask")) text += "- image-segmentation\n- object-detection\n";
   text += fmt::format(
@@ -79,39 +76,95 @@ std::vector<std::string> licence_files(const std::vector<LicenceRecord>& licence
   return files;
 }
 
-std::string body(const ExportInput& input, const ExporterType& type, const ExportFolder& to) {
-  const DatasetRecord& dataset = input.dataset;
-  std::string text =
-      fmt::format("# {}\n\nPictures path-traced from 3D models by dsbuild, as {}.\n\n",
-                  dataset.name, type.help);
-  text += "| split | images |\n| --- | --- |\n";
-  for (const auto& [split, count] : input.splits)
-    text += fmt::format("| {} | {} |\n", split, count);
-  text += fmt::format("\n{} classes; a label is the place in this list, from 0: {}\n\n",
-                      input.classes.size(), fmt::join(input.classes, ", "));
-  text +=
-      "Every picture, mask and label is computed, none was drawn or looked at by a person. Masks "
-      "show "
-      "what is seen of the model; what stands before it is cut out. World: right-handed, z up, "
-      "metres. "
-      "Cameras: x right, y down, z forward; pixel centres at .5. They are synthetic pictures: "
-      "whatever a real camera adds is missing.\n";
+/// Images by class and split; "" is what no class file lists.
+std::string counts_text(const ExportInput& input) {
+  std::string text = "| class | label |", rule = "\n| --- | --- |";
+  for (const auto& [split, count] : input.splits) {
+    text += fmt::format(" {} |", split.empty() ? "no split" : split);
+    rule += " --- |";
+  }
+  text += rule + "\n";
+  for (const auto& [path, by_split] : input.counts) {
+    const auto at = std::lower_bound(input.classes.begin(), input.classes.end(), path);
+    const bool known = at != input.classes.end() && *at == path;
+    text += fmt::format("| {} | {} |", path.empty() ? "none" : path,
+                        known ? std::to_string(at - input.classes.begin()) : "");
+    for (const auto& [split, count] : input.splits) {
+      const auto found = by_split.find(split);
+      text += fmt::format(" {} |", found == by_split.end() ? 0 : found->second);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+/// What of the dataset is not here, and what else its readers must know.
+std::string notes_text(const ExportInput& input, const ExportFolder& to) {
+  std::string text;
+  if (!input.filters.empty())
+    text += fmt::format("- A part of the dataset: {}.\n", fmt::join(input.filters, ", "));
+  for (const auto& [why, count] : input.left_out)
+    text += fmt::format("- {} images are left out: {}.\n", count,
+                        why == "unclassified" ? "they have no class or split"
+                        : why == "split"      ? "they are of another split"
+                                              : "the filter");
   for (const std::string& note : to.notes())
-    text += fmt::format("\nNote: {}\n", note);
-  text += "\n## Licences\n\n";
-  if (!dataset.licence.empty()) text += fmt::format("The dataset: {}\n\n", dataset.licence);
-  if (dataset.licences.empty()) text += "No licence stands beside any of its models and scenes.\n";
+    text += fmt::format("- {}\n", note);
+  return text.empty() ? "" : "\n## Notes\n\n" + text;
+}
+
+std::string planes_text(const ExportInput& input, const ExporterType& type) {
+  std::string text;
+  for (const auto& [name, plane] : input.dataset.planes) {
+    const bool taken = type.takes.empty() ||
+                       std::find(type.takes.begin(), type.takes.end(), name) != type.takes.end();
+    if (taken && input.has(name))
+      text += fmt::format("- `{}` ({}): {}\n", name, plane.encoding, plane.convention);
+  }
+  return text.empty() ? "" : "\nBeside each picture:\n" + text;
+}
+
+std::string licences_text(const ExportInput& input) {
+  const DatasetRecord& dataset = input.dataset;
+  std::string text = fmt::format("\n## Licences\n\nThe dataset: {}\n",
+                                 dataset.licence.empty() ? "not stated" : dataset.licence);
   const std::vector<std::string> files = licence_files(dataset.licences);
   for (std::size_t i = 0; i < files.size(); ++i) {
     const LicenceRecord& licence = dataset.licences[i];
     text += fmt::format("- [{}]({}): {}\n", licence.spdx.empty() ? "no SPDX id" : licence.spdx,
                         files[i], fmt::join(licence.assets, ", "));
   }
+  if (!input.unlicensed.empty())
+    text += fmt::format("- no licence stands beside {}: {}\n",
+                        input.unlicensed.size() == 1 ? "this" : "these",
+                        fmt::join(input.unlicensed, ", "));
+  return text;
+}
+
+std::string body(const ExportInput& input, const ExporterType& type, const ExportFolder& to) {
+  const DatasetRecord& dataset = input.dataset;
+  std::string text =
+      fmt::format("# {}\n\nPictures of 3D models, path-traced by dsbuild, {} pixels, as {}.\n\n",
+                  dataset.name, input.size, type.help);
+  text += counts_text(input) + planes_text(input, type);
+  text +=
+      "\nEverything here is computed, nothing was drawn or looked at by a person, and whatever a "
+      "real "
+      "camera adds is missing. ";
+  if (input.has("mask"))
+    text +=
+        "Masks show what is seen of the model; what stands before it is cut out. A bbox is [x, y, "
+        "width, height] of that in whole pixels. ";
+  text +=
+      "World: right-handed, z up, metres. Cameras: x right, y down, z forward; pixel centres at "
+      ".5.\n";
+  text += notes_text(input, to) + licences_text(input);
   text += fmt::format(
-      "\n## How it was made\n\nBy dsbuild {}, seed {}, from this recipe (`dsbuild build` makes the "
-      "same "
-      "bytes again):\n\n```\n{}\n```\n\n`dsbuild verify FOLDER` compares this folder with its "
-      "checksums.\n",
+      "\n## How it was made\n\nBy dsbuild {}, seed {}; `dsbuild build` makes the dataset's files "
+      "again "
+      "from this recipe and the same assets:\n\n```\n{}\n```\n\n`dsbuild verify FOLDER` compares "
+      "this "
+      "folder with its checksums.\n",
       dataset.dsbuild_version, dataset.seed, dataset.recipe_text);
   return text;
 }

@@ -87,6 +87,8 @@ ExporterType coco_exporter() {
   return {"coco",
           "COCO: annotations/instances_SPLIT.json with boxes and masks, images/SPLIT",
           {"image", "mask"},
+          {"image", "mask"},
+          true,
           make_exporter<Coco>};
 }
 

@@ -53,7 +53,8 @@ class Csv : public Exporter {
 }  // namespace
 
 ExporterType csv_exporter() {
-  return {"csv", "one table, images.csv, and the files it names", {}, make_exporter<Csv>};
+  return {
+      "csv", "one table, images.csv, and the files it names", {}, {}, false, make_exporter<Csv>};
 }
 
 }  // namespace ds

@@ -34,6 +34,17 @@ std::string_view value_of(const ImageRecord& image, std::string_view key) {
   return image.view;
 }
 
+/// The class itself or one above it, the model with or without its ending.
+bool matches_value(const ImageRecord& image, std::string_view key, std::string_view pattern) {
+  const std::string_view value = value_of(image, key);
+  if (matches_pattern(value, pattern)) return true;
+  if (key == "model") return matches_pattern(value.substr(0, value.rfind('.')), pattern);
+  if (key != "class") return false;
+  for (std::size_t at = value.find('/'); at != value.npos; at = value.find('/', at + 1))
+    if (matches_pattern(value.substr(0, at), pattern)) return true;
+  return false;
+}
+
 /// Every image of the manifest, a line at a time.
 template <typename Visit>
 void visit_images(const fs::path& folder, const Visit& visit) {
@@ -55,17 +66,29 @@ class Export {
   void check_request();
   /// Why the image is not exported; "" where it is.
   std::string left_out(const ImageRecord& image) const;
+  /// "train" where the dataset knows no splits: what readers take a dataset without any for.
+  std::string split_of(const ImageRecord& image) const;
   void look();
+  std::string values_of_filters() const;
   void check_found() const;
+  /// Notes the model, so that keys of all images are known to differ.
+  void add_key(const ImageRecord& image);
+  void check_keys() const;
   std::string key_of(const ImageRecord& image) const;
+  /// A file of the licences' list may have an ending that the manifest leaves out.
+  bool is_licensed(const std::string& asset) const;
+  /// Says which of the dataset's files the format has no place for.
+  void note_kinds(ExportFolder& to) const;
   std::string record(const ExportFolder& to) const;
 
   const ExportRequest& request_;
   const ExporterType* type_ = nullptr;
   ExportInput input_;
   bool has_classes_ = false, has_splits_ = false;
-  std::set<std::string> splits_;        ///< of all images
-  std::set<std::string> shared_stems_;  ///< of several models
+  std::set<std::string> splits_;               ///< of all images
+  std::map<std::string, std::string> models_;  ///< by what their images' keys begin with
+  std::set<std::string> shared_stems_;         ///< of several models
+  std::set<std::string> licensed_, unlicensed_;
   ExportResult result_;
 };
 
@@ -92,22 +115,22 @@ std::string Export::left_out(const ImageRecord& image) const {
     for (const auto& [wanted, pattern] : request_.filters)
       if (wanted == key) {
         named = true;
-        matches = matches || matches_pattern(value_of(image, key), pattern);
+        matches = matches || matches_value(image, key, pattern);
       }
     if (named && !matches) return "filter";
   }
-  if (has_classes_ && image.class_path.empty()) return "unclassified";
+  if (type_->needs_labels && has_classes_ && image.class_path.empty()) return "unclassified";
   if (!has_splits_) return "";
-  if (image.split.empty()) return "unclassified";
+  if (image.split.empty())
+    return type_->needs_labels || !request_.splits.empty() ? "unclassified" : "";
   const auto& wanted = request_.splits;
   return wanted.empty() || std::find(wanted.begin(), wanted.end(), image.split) != wanted.end()
              ? ""
              : "split";
 }
 
-/// "train" where the dataset knows no splits: what readers take a dataset without any for.
-std::string split_of(const ImageRecord& image) {
-  return image.split.empty() ? "train" : image.split;
+std::string Export::split_of(const ImageRecord& image) const {
+  return has_splits_ ? image.split : "train";
 }
 
 void Export::look() {
@@ -124,13 +147,14 @@ void Export::look() {
     if (!image.split.empty()) splits_.insert(image.split);
   });
   has_splits_ = !splits_.empty();
+  for (const LicenceRecord& licence : input_.dataset.licences)
+    licensed_.insert(licence.assets.begin(), licence.assets.end());
   for (const std::string& split : request_.splits)
     if (!splits_.contains(split))
       fail(ErrorKind::usage, "--split: wanted {}, got {}",
            has_splits_ ? fmt::format("{}", fmt::join(splits_, " or "))
                        : "none, the dataset has no splits",
            split);
-  std::map<std::string, std::string> models;  // by stem
   std::optional<std::vector<std::string>> kinds;
   visit_images(request_.folder, [&](const ImageRecord& image) {
     if (const std::string why = left_out(image); !why.empty()) {
@@ -139,18 +163,47 @@ void Export::look() {
     }
     ++result_.images;
     ++input_.splits[split_of(image)];
-    const std::string stem = export_key(image.model, image.model, false);
-    if (const auto [at, is_new] = models.try_emplace(stem, image.model);
-        !is_new && at->second != image.model)
-      shared_stems_.insert(stem);
+    ++input_.counts[image.class_path][split_of(image)];
+    const std::string size = fmt::format("{} x {}", image.width, image.height);
+    input_.size = input_.size.empty() || input_.size == size ? size : "of several sizes";
+    for (const std::string& asset : {"models/" + image.model, "materials/" + image.material,
+                                     "environments/" + image.environment})
+      if (!is_licensed(asset)) unlicensed_.insert(asset);
+    add_key(image);
     std::vector<std::string> own;
     for (const FileRecord& file : image.files)
       if (!kinds || std::find(kinds->begin(), kinds->end(), file.kind) != kinds->end())
         own.push_back(file.kind);
     kinds = own;
   });
+  input_.unlicensed.assign(unlicensed_.begin(), unlicensed_.end());
+  input_.left_out = result_.left_out;
+  for (const auto& [key, pattern] : request_.filters)
+    input_.filters.push_back(key + "=" + pattern);
+  for (const std::string& split : request_.splits)
+    input_.filters.push_back("split=" + split);
   input_.kinds = kinds.value_or(std::vector<std::string>{});
   result_.splits = input_.splits;
+}
+
+/// "; class is one of car, mug", of the keys that were filtered by.
+std::string Export::values_of_filters() const {
+  constexpr std::size_t k_most = 8;
+  std::string text;
+  for (const std::string_view key : k_filter_keys) {
+    if (std::none_of(request_.filters.begin(), request_.filters.end(),
+                     [&](const auto& filter) { return filter.first == key; }))
+      continue;
+    std::set<std::string> values;
+    visit_images(request_.folder,
+                 [&](const ImageRecord& image) { values.emplace(value_of(image, key)); });
+    const std::size_t count = values.size();
+    while (values.size() > k_most)
+      values.erase(std::prev(values.end()));
+    text += fmt::format("; {} is one of {}{}", key, fmt::join(values, ", "),
+                        count > k_most ? fmt::format(" and {} more", count - k_most) : "");
+  }
+  return text;
 }
 
 void Export::check_found() const {
@@ -158,17 +211,46 @@ void Export::check_found() const {
     std::string why;
     for (const auto& [what, count] : result_.left_out)
       why += fmt::format("{}{} by {}", why.empty() ? "" : ", ", count, what);
-    fail(ErrorKind::usage, "{}: no image to export{}", request_.folder.string(),
-         why.empty() ? "" : fmt::format(" (left out: {})", why));
+    fail(ErrorKind::usage, "{}: no image to export{}{}", request_.folder.string(),
+         why.empty() ? "" : fmt::format(" (left out: {})", why), values_of_filters());
   }
   for (const char* kind : type_->needs)
     if (!input_.has(kind))
       fail(ErrorKind::asset,
            "{}: the format {} needs the file \"{}\" of every image, and the dataset has {}; build "
            "it "
-           "with that output",
+           "with outputs.{} = true",
            request_.folder.string(), type_->name, kind,
-           input_.kinds.empty() ? "none" : fmt::format("{}", fmt::join(input_.kinds, ", ")));
+           input_.kinds.empty() ? "none" : fmt::format("{}", fmt::join(input_.kinds, ", ")), kind);
+}
+
+void Export::add_key(const ImageRecord& image) {
+  const std::string stem = export_key(image.model, image.model, false);
+  const auto [at, is_new] = models_.try_emplace(stem, image.model);
+  if (!is_new && at->second != image.model) shared_stems_.insert(stem);
+}
+
+/// With their endings names of models may still be one: a "." and a "_" are.
+void Export::check_keys() const {
+  std::map<std::string, std::string> models;
+  visit_images(request_.folder, [&](const ImageRecord& image) {
+    if (!left_out(image).empty()) return;
+    const bool shared = shared_stems_.contains(export_key(image.model, image.model, false));
+    const auto [at, is_new] =
+        models.try_emplace(export_key(image.model, image.model, shared), image.model);
+    if (!is_new && at->second != image.model)
+      fail(ErrorKind::asset,
+           "the models {} and {} have one name in an export, {}; rename one of them, or leave one "
+           "out "
+           "(--filter)",
+           at->second, image.model, at->first);
+  });
+}
+
+bool Export::is_licensed(const std::string& asset) const {
+  if (licensed_.contains(asset)) return true;
+  const auto at = licensed_.lower_bound(asset + ".");
+  return at != licensed_.end() && at->starts_with(asset + ".");
 }
 
 std::string Export::key_of(const ImageRecord& image) const {
@@ -176,16 +258,24 @@ std::string Export::key_of(const ImageRecord& image) const {
                     shared_stems_.contains(export_key(image.model, image.model, false)));
 }
 
+void Export::note_kinds(ExportFolder& to) const {
+  if (type_->takes.empty()) return;
+  std::vector<std::string> without;
+  for (const std::string& kind : input_.kinds)
+    if (std::find(type_->takes.begin(), type_->takes.end(), kind) == type_->takes.end())
+      without.push_back(kind);
+  if (!without.empty())
+    to.note(fmt::format("{}: left out, the format {} has no place for it", fmt::join(without, ", "),
+                        type_->name));
+}
+
 std::string Export::record(const ExportFolder& to) const {
-  nlohmann::json filters = nlohmann::json::array();
-  for (const auto& [key, pattern] : request_.filters)
-    filters.push_back(key + "=" + pattern);
   return canonical_json({{"format", type_->name},
                          {"dataset", input_.dataset.name},
                          {"dsbuild_version", input_.dataset.dsbuild_version},
                          {"splits", input_.splits},
                          {"classes", input_.classes},
-                         {"filters", filters},
+                         {"filters", input_.filters},
                          {"images", result_.images},
                          {"left_out", result_.left_out},
                          {"notes", to.notes()}},
@@ -196,8 +286,12 @@ ExportResult Export::run(const std::function<void(std::uint64_t, std::uint64_t)>
                          const std::atomic<bool>& stop) {
   look();
   check_found();
+  if (!shared_stems_.empty()) check_keys();
   ExportFolder to(request_.folder, request_.to, request_.copy);
   const std::unique_ptr<Exporter> exporter = type_->make(input_, to);
+  for (const std::string& note : request_.notes)
+    to.note(note);
+  note_kinds(to);
   std::set<std::string> keys;
   std::uint64_t done = 0;
   visit_images(request_.folder, [&](ImageRecord&& record) {
@@ -209,7 +303,9 @@ ExportResult Export::run(const std::function<void(std::uint64_t, std::uint64_t)>
       fail(ErrorKind::asset, "the images {} and another would both be exported as {}",
            image.record.id, image.key);
     image.split = split_of(image.record);
-    if (has_classes_) {
+    if (has_classes_ && image.record.class_path.empty()) {
+      image.label = -1;
+    } else if (has_classes_) {
       const auto at =
           std::lower_bound(input_.classes.begin(), input_.classes.end(), image.record.class_path);
       if (at == input_.classes.end() || *at != image.record.class_path)

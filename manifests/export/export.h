@@ -18,9 +18,12 @@ struct ExportRequest {
   std::string format;               ///< of exporter_types()
   std::vector<std::string> splits;  ///< these only; empty: all
   /// ("class", "vehicle/*"): images of which that matches one pattern of each key that is named. Keys:
-  /// class, model, material, environment, view. Patterns: * any text, ? any character.
+  /// class (or a class above it), model (with or without its ending), material, environment, view.
+  /// Patterns: * any text, ? any character.
   std::vector<std::pair<std::string, std::string>> filters;
   bool copy = false;
+  /// What readers must know of the dataset, as that its recipe wants more: a warning, and in the card.
+  std::vector<std::string> notes{};
 };
 
 struct ExportResult {

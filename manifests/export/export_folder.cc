@@ -9,6 +9,8 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
+#include <set>
+#include <sstream>
 #include <stdio.h>
 #include <system_error>
 #include <utility>
@@ -41,12 +43,50 @@ void rename_or_exchange(const fs::path& from, const fs::path& to) {
   fs::remove_all(aside, error);
 }
 
+bool is_inside(const fs::path& path, const fs::path& folder) {
+  const auto [end, at] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  return end == folder.end();
+}
+
+/// An export in a dataset would be taken for its files, and the other way round.
+void check_apart(const fs::path& dataset, const fs::path& to) {
+  if (is_inside(to, dataset) || is_inside(dataset, to))
+    fail(ErrorKind::usage, "-o {}: wanted a folder apart from the dataset's, {}", to.string(),
+         dataset.string());
+}
+
+/// Throws where an export that is to be replaced holds files that somebody put there.
+void check_own(const fs::path& to) {
+  std::set<std::string> own{k_export_checksums};
+  std::istringstream lines(read_text_file(to / k_export_checksums));
+  constexpr std::size_t k_before_path = 34;
+  for (std::string line; std::getline(lines, line);)
+    if (line.size() > k_before_path) own.insert(line.substr(k_before_path));
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(to, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string path = entry->path().lexically_relative(to).generic_string();
+    if (!entry->is_directory(error) && !own.contains(path))
+      fail(ErrorKind::usage,
+           "-o {}: holds {}, which no export put there and a new one would take away; move it, or "
+           "export to another folder",
+           to.string(), path);
+  }
+}
+
 }  // namespace
 
 std::string read_checked(const fs::path& folder, const FileRecord& file) {
+  std::error_code error;
+  if (!fs::exists(folder / file.path, error))
+    fail(ErrorKind::asset, "{}: is missing; dsbuild build makes it again",
+         (folder / file.path).string());
   std::string bytes = read_text_file(folder / file.path);
   if (hash_text(bytes) != file.hashes.xxh128)
-    fail(ErrorKind::asset, "{}: is not what the manifest says; dsbuild verify tells more",
+    fail(ErrorKind::asset,
+         "{}: is not what the manifest says, as after an edit, or while a build is under way; "
+         "dsbuild "
+         "verify tells more",
          (folder / file.path).string());
   return bytes;
 }
@@ -54,12 +94,16 @@ std::string read_checked(const fs::path& folder, const FileRecord& file) {
 ExportFolder::ExportFolder(fs::path from, fs::path to, bool copy)
     : from_(std::move(from)), to_(fs::absolute(to).lexically_normal()), copy_(copy) {
   if (!to_.has_filename()) to_ = to_.parent_path();
+  // What a link leads to is written, and the link stays.
   std::error_code error;
+  if (const fs::path real = fs::canonical(to_, error); !error) to_ = real;
+  check_apart(fs::weakly_canonical(from_, error), fs::weakly_canonical(to_, error));
   const bool replaces = fs::exists(to_ / k_export_record, error);
   if (fs::exists(to_, error) && !replaces &&
       !(fs::is_directory(to_, error) && fs::is_empty(to_, error)))
     fail(ErrorKind::usage, "-o {}: is there already and no export of dsbuild; wanted a new folder",
          to_.string());
+  if (replaces) check_own(to_);
   folder_ = make_process_folder(to_.parent_path() / k_work_folder) / to_.filename();
   make_folders(folder_);
 }
@@ -85,7 +129,10 @@ void ExportFolder::flush() {
 }
 
 void ExportFolder::place(const FileRecord& file, const std::string& path) {
-  if (content_hash(from_ / file.path) != file.hashes.xxh128) read_checked(from_, file);
+  std::error_code error;
+  if (!fs::exists(from_ / file.path, error) ||
+      content_hash(from_ / file.path) != file.hashes.xxh128)
+    read_checked(from_, file);  // throws
   enter(path, file.hashes.xxh128, file.hashes.size_bytes);
   if (!batch_) batch_ = std::make_unique<FileBatch>();
   if (copy_)

@@ -30,7 +30,7 @@ struct ExportImage {
   /// "mug-1-3": one name for all formats, of no dot, slash or blank, no two images' the same.
   std::string key;
   std::string split;  ///< "train", "test"; "train" in a dataset that has no splits
-  int label = 0;      ///< of ExportInput::classes
+  int label = 0;      ///< of ExportInput::classes; -1 where it has no class
 };
 
 /// What is exported, the same for all of its images.
@@ -42,6 +42,12 @@ struct ExportInput {
   std::map<std::string, std::uint64_t> splits;  ///< images that are exported, by split
   /// Kinds of files that every image has, "image" first.
   std::vector<std::string> kinds;
+  std::map<std::string, std::map<std::string, std::uint64_t>>
+      counts;                                     ///< images by class and split
+  std::map<std::string, std::uint64_t> left_out;  ///< images that are not exported, by why
+  std::vector<std::string> unlicensed;  ///< models, materials, environments without a licence
+  std::vector<std::string> filters;     ///< "class=vehicle/*", "split=test": what was asked for
+  std::string size;                     ///< "256 x 256", or "of several sizes"
 
   bool has(const std::string& kind) const;
 };
@@ -59,6 +65,8 @@ struct ExporterType {
   const char* name;
   const char* help;                ///< one line
   std::vector<const char*> needs;  ///< kinds of files without which there is no such export
+  std::vector<const char*> takes;  ///< kinds that it has a place for; empty: all
+  bool needs_labels;               ///< images without class or split have no place in it
   std::unique_ptr<Exporter> (*make)(const ExportInput& input, ExportFolder& to);
 };
 

@@ -41,10 +41,9 @@ class ImageFolder : public Exporter {
 }  // namespace
 
 ExporterType imagefolder_exporter() {
-  return {"imagefolder",
-          "Hugging Face ImageFolder: load_dataset(\"imagefolder\", data_dir=...)",
-          {"image"},
-          make_exporter<ImageFolder>};
+  return {"imagefolder", "Hugging Face ImageFolder: load_dataset(\"imagefolder\", data_dir=...)",
+          {"image"},     {},
+          true,          make_exporter<ImageFolder>};
 }
 
 }  // namespace ds

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // NeRF as nerfstudio reads it: a folder for each static scene, which is a model in one material and
-// environment, with transforms.json, images and masks.
+// environment, with transforms.json, images and masks. Splits of a dataset are of its models; which views
+// train a scene is left to the reader.
 #include "manifests/export/exporter.h"
 #include "manifests/json_text.h"
 
@@ -50,7 +51,6 @@ class Nerf : public Exporter {
     nlohmann::json frame{{"transform_matrix", opengl_pose(record.camera_to_world)}};
     frame["file_path"] = add_file(scene, image, "image", "images");
     if (input_.has("mask")) frame["mask_path"] = add_file(scene, image, "mask", "masks");
-    scene.names[image.split].push_back(frame["file_path"]);
     scene.frames.push_back(std::move(frame));
   }
 
@@ -60,7 +60,6 @@ class Nerf : public Exporter {
   struct Scene {
     nlohmann::json head;
     nlohmann::json frames = nlohmann::json::array();
-    std::map<std::string, nlohmann::json> names;  ///< of files, by split
     std::vector<std::pair<FileRecord, std::string>> files;
   };
 
@@ -81,14 +80,6 @@ class Nerf : public Exporter {
       for (const auto& [file, path] : scene.files)
         to_.place(file, name + "/" + path);
       scene.head["frames"] = std::move(scene.frames);
-      // Once one of these is there, all that a reader asks for must be.
-      if (scene.names.size() > 1 || !scene.names.contains("train")) {
-        for (const char* split : {"train", "val", "test"})
-          scene.head[std::string(split) + "_filenames"] = nlohmann::json::array();
-        for (const auto& [split, names] : scene.names)
-          scene.head[split + "_filenames"] = names;
-        scene.head["val_filenames"] = scene.head["test_filenames"];
-      }
       to_.write(name + "/transforms.json", canonical_json(scene.head, 1));
     }
     scenes_.clear();
@@ -106,6 +97,8 @@ ExporterType nerf_exporter() {
   return {"nerf",
           "NeRF (nerfstudio): a folder with transforms.json for each model, material, environment",
           {"image"},
+          {"image", "mask"},
+          false,
           make_exporter<Nerf>};
 }
 

@@ -118,10 +118,10 @@ class Parquet : public Exporter {
 }  // namespace
 
 ExporterType parquet_exporter() {
-  return {"parquet",
-          "Apache Parquet with the pictures in it: load_dataset(\"parquet\", data_dir=...)",
-          {"image"},
-          make_exporter<Parquet>};
+  return {
+      "parquet", "Apache Parquet with the pictures in it: load_dataset(\"parquet\", data_dir=...)",
+      {"image"}, {},
+      true,      make_exporter<Parquet>};
 }
 
 }  // namespace ds

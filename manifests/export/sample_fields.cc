@@ -20,7 +20,7 @@ nlohmann::json sample_fields(const ExportInput& input, const ExportImage& image)
   const ImageRecord& record = image.record;
   nlohmann::json fields{{"id", record.id},
                         {"split", image.split},
-                        {"label", image.label},
+                        {"label", image.label < 0 ? nlohmann::json() : nlohmann::json(image.label)},
                         {"class_path", record.class_path},
                         {"model", record.model},
                         {"material", record.material},

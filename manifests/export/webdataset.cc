@@ -111,10 +111,9 @@ class WebDataset : public Exporter {
 }  // namespace
 
 ExporterType webdataset_exporter() {
-  return {"webdataset",
-          "WebDataset: NAME-SPLIT-000000.tar and so on",
-          {"image"},
-          make_exporter<WebDataset>};
+  return {"webdataset", "WebDataset: NAME-SPLIT-000000.tar and so on",
+          {"image"},    {},
+          true,         make_exporter<WebDataset>};
 }
 
 }  // namespace ds

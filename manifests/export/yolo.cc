@@ -32,6 +32,8 @@ class Yolo : public Exporter {
         input_.splits.contains("train") ? "train" : input_.splits.begin()->first;
     const std::string last =
         input_.splits.contains("test") ? "test" : input_.splits.rbegin()->first;
+    if (first != last && last == "test")
+      to_.note("data.yaml names the test split for val too, which readers want");
     if (first == last)
       to_.note(
           fmt::format("there is one split only: data.yaml names {} for train and for val", first));
@@ -54,6 +56,8 @@ ExporterType yolo_exporter() {
   return {"yolo",
           "YOLO detection: data.yaml, images/SPLIT, labels/SPLIT",
           {"image", "mask"},
+          {"image", "mask"},
+          true,
           make_exporter<Yolo>};
 }
 

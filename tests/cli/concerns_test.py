@@ -242,6 +242,10 @@ class ConcernsTest(TinyCase):
     def test_classes_that_do_not_fit_the_files(self):
         (self.tiny / "train.cla").write_text("PSB 1\n3 4\n\nthing 0 0\n\nbox thing 2\nbox\ngone\n\nship 0 2\nfar\nlost\n")
         self.edit("recipe.toml", "[materials]", '[classes]\ntrain = "train.cla"\n\n[materials]')
+        for verb in (["plan"], ["build", "-n"]):  # before anything is traced
+            run = self.run_it(*verb, self.recipe, "-o", self.out, "--json")
+            self.assertEqual(run.json["concerns"], {**NONE, "models_absent": 3, "models_unlisted": 1, "classes_empty": 1})
+            self.assertIn("warning: 3 of 4 models that the class files list have no file: far, gone, lost", run.err)
         concerns, err = self.concerns()
         self.assertEqual(concerns, {**NONE, "models_absent": 3, "models_unlisted": 1, "classes_empty": 1})
         self.assertIn("3 of 4 models that the class files list have no file: far, gone, lost", err)

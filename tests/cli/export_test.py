@@ -193,11 +193,10 @@ class ExportTest(TinyCase):
         for path in self.to.rglob("transforms.json"):
             scene = json.loads(path.read_text())
             listed = [name for split in ("train", "val", "test") for name in scene.get(split + "_filenames", [])]
+            self.assertFalse([name for name in scene if name.endswith("_filenames")])
             for frame in scene["frames"]:
                 self.assertTrue((path.parent / frame["file_path"]).is_file())
                 self.assertTrue((path.parent / frame["mask_path"]).is_file())
-                if listed:
-                    self.assertIn(frame["file_path"], listed)
                 frames[os.path.basename(frame["file_path"])[:-4]] = (scene, frame)
         self.assertEqual(len(frames), IMAGES)
         for record in self.records():
@@ -240,10 +239,33 @@ class ExportTest(TinyCase):
         self.assertEqual(run.code, 2, run)
         self.assertEqual((self.to / "mine").read_text(), "mine")
         shutil.rmtree(self.to)
-        # A damaged picture ends it, and names the file.
+        # What somebody put into an export stays, and so does a link; a dataset takes no export in.
+        real = self.folder / "real"
+        self.to.symlink_to(real)
+        real.mkdir()
+        self.export("csv")
+        self.assertTrue(self.to.is_symlink())
+        self.export("yolo")
+        (real / "mine").write_text("mine")
+        run = self.run_it("export", self.out, "--format", "csv", "-o", self.to)
+        self.assertEqual(run.code, 2, run)
+        self.assertIn("holds mine, which no export put there", run.err)
+        self.assertEqual(self.run_it("verify", real).code, 1)
+        (real / "mine").unlink()
+        self.assertIn("files: all as the export's checksums say", self.run_it("verify", real).out)
+        self.to.unlink()
+        for inside in (self.out / "export", self.out, self.folder):
+            run = self.run_it("export", self.out, "--format", "csv", "-o", inside)
+            self.assertEqual(run.code, 2, run)
+        for missing, said in (["--format", "csv"], "wanted --output"), (["-o", self.to], "wanted --format"):
+            run = self.run_it("export", self.out, *missing)
+            self.assertEqual((run.code, said in run.err), (2, True), run)
+        # A missing or damaged picture ends it, and names the file.
         picture = self.out / "images/box.off/1.png"
         whole = picture.read_bytes()
         picture.unlink()
+        run = self.run_it("export", self.out, "--format", "imagefolder", "-o", self.to)
+        self.assertIn("images/box.off/1.png: is missing; dsbuild build makes it again", run.err)
         picture.write_bytes(whole[:-20])
         run = self.run_it("export", self.out, "--format", "imagefolder", "-o", self.to)
         self.assertEqual(run.code, 1, run)
@@ -251,7 +273,8 @@ class ExportTest(TinyCase):
         self.assertFalse(self.to.exists())
         self.build("--set", "outputs.mask=false")
         run = self.run_it("export", self.out, "--format", "coco", "-o", self.to)
-        self.assertIn('needs the file "mask" of every image, and the dataset has image', run.err)
+        self.assertIn('needs the file "mask" of every image, and the dataset has image; build it with '
+                      'outputs.mask = true', run.err)
         self.assertEqual([p.name for p in self.folder.iterdir() if p.name.startswith(".")], [])
 
     def test_a_dataset_that_is_behind_is_said_to_be(self):
@@ -261,6 +284,47 @@ class ExportTest(TinyCase):
         run = self.run_it("export", self.out, "--format", "csv", "-o", self.to)
         self.assertEqual(run.code, 0, run)
         self.assertIn("of 8 images are not as their recipe wants them", run.err)
+        self.assertIn("of 8 images are not as their recipe wants them", (self.to / "README.md").read_text())
+
+    def test_names_that_are_one_without_their_endings(self):
+        shutil.copy(self.tiny / "models/box.off", self.tiny / "models/tetra.off")
+        (self.tiny / "test.cla").write_text("PSB 1\n2 2\nsolid 0 0\nspike solid 2\ntetra.ply\ntetra.off\n")
+        self.build()
+        self.export("csv")
+        names = {path.name for path in (self.to / "images").iterdir()}
+        self.assertLessEqual({"box-0.png", "tetra_ply-0.png", "tetra_off-0.png"}, names)
+        # With its ending tetra.ply is tetra_ply, and so is tetra_ply.off without.
+        shutil.copy(self.tiny / "models/box.off", self.tiny / "models/tetra_ply.off")
+        self.build()
+        run = self.run_it("export", self.out, "--format", "csv", "-o", self.to)
+        self.assertEqual(run.code, 1, run)
+        self.assertIn("have one name in an export, tetra_ply; rename one of them", run.err)
+
+    def test_images_without_a_class(self):
+        (self.tiny / "test.cla").write_text("PSB 1\n1 0\nspike 0 0\n")
+        self.build()
+        self.assertEqual(self.export("webdataset")["left_out"], {"unclassified": IMAGES // 2})
+        self.assertIn("4 images are left out: they have no class or split", (self.to / "README.md").read_text())
+        self.assertEqual((self.export("csv")["images"], self.export("nerf")["images"]), (IMAGES, IMAGES))
+
+    def test_the_card_claims_no_licence_that_nobody_gave(self):
+        self.build()
+        shutil.copy(self.source / "LICENSE", self.tiny / "materials/LICENSE")
+        self.build("--set", 'dataset.licence=""')
+        self.export("csv")
+        card = (self.to / "README.md").read_text()
+        self.assertIn("license: other\nlicense_name: \"not stated\"\nlicense_link: LICENSES\n", card)
+        self.assertIn("no licence stands beside these: environments/floor, environments/plain, models/box.off, "
+                      "models/tetra.ply", card)
+        self.build("--set", "dataset.licence=CC-BY-4.0")
+        self.export("csv")
+        self.assertIn("license: cc-by-4.0\n", (self.to / "README.md").read_text())
+
+    def test_planes_that_have_no_place(self):
+        self.build("--set", 'outputs.planes=["depth"]')
+        self.assertEqual(self.export("coco")["notes"], ["depth: left out, the format coco has no place for it"])
+        self.assertEqual(self.export("csv")["notes"], [])
+        self.assertIn("- `depth` (exr): ", (self.to / "README.md").read_text())
 
     def test_killed_at_any_moment(self):
         self.export("coco")
