@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -94,6 +95,11 @@ struct DatasetRecord {
   /// Empty where an older dsbuild wrote none.
   std::vector<Concern> concerns{};
 };
+
+/// Throws Error(asset) for a path that no manifest may hold: one that is absolute or leaves the folder,
+/// or has a control character or backslash (checksums.xxh128 has one line a path, and `xxhsum -c`
+/// reads no escapes).
+void check_manifest_path(std::string_view path);
 
 /// The line without its line break. Numbers must be finite and texts UTF-8: Error(asset) otherwise.
 std::string to_json_line(const ImageRecord& image);

@@ -16,8 +16,20 @@ constexpr const char* k_images = "manifest/images.jsonl";
 constexpr const char* k_dataset = "manifest/dataset.json";
 constexpr const char* k_checksums = "manifest/checksums.xxh128";
 
-/// One line a path in checksums.xxh128, and `xxhsum -c` reads no escapes.
-void check_path(std::string_view path) {
+/// Whether the file has these bytes; not where that cannot be told.
+bool has_content(const fs::path& file, Hash128 content) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return false;
+  try {
+    return content_hash(file) == content;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+void check_manifest_path(std::string_view path) {
   const fs::path parts(path);
   const bool leaves =
       std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part == ".."; });
@@ -32,19 +44,6 @@ void check_path(std::string_view path) {
   }
 }
 
-/// Whether the file has these bytes; not where that cannot be told.
-bool has_content(const fs::path& file, Hash128 content) {
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) return false;
-  try {
-    return content_hash(file) == content;
-  } catch (const Error&) {
-    return false;
-  }
-}
-
-}  // namespace
-
 ManifestWriter::ManifestWriter(const fs::path& folder)
     : folder_(folder), images_(folder / k_images) {}
 
@@ -54,7 +53,7 @@ void ManifestWriter::add(std::string_view line, const LineGlance& image) {
   any_ = true;
   last_id_ = image.id;
   for (const LineGlance::File& file : image.files) {
-    check_path(file.path);
+    check_manifest_path(file.path);
     checksums_.emplace_back(file.path, file.xxh128);
   }
   for (const std::string_view text : {line, std::string_view("\n")}) {

@@ -9,12 +9,14 @@
 #include "manifests/manifest_glance.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
+#include "tracer/base/hash_stream.h"
 #include "tracer/base/nearest.h"
 
 #include <algorithm>
 #include <array>
 #include <fstream>
 #include <set>
+#include <sstream>
 #include <string_view>
 
 namespace ds {
@@ -56,6 +58,23 @@ void visit_images(const fs::path& folder, const Visit& visit) {
     visit(image_from_json_line(line, file.string(), number));
 }
 
+/// Labels, poses and splits stand in the manifest alone: what was edited there is not to be handed on.
+void check_manifest(const fs::path& folder) {
+  constexpr const char* k_sums = "manifest/checksums.xxh128";
+  std::istringstream lines(read_text_file(folder / k_sums));
+  constexpr std::size_t k_before_path = 34;
+  std::map<std::string, std::string> sums;
+  for (std::string line; std::getline(lines, line);)
+    if (line.size() > k_before_path) sums[line.substr(k_before_path)] = line.substr(0, 32);
+  for (const char* file : {k_images, "manifest/dataset.json"})
+    if (content_hash(folder / file).hex() != sums[file])
+      fail(
+          ErrorKind::asset,
+          "{}: is not what {} says, as after an edit, or while a build is under way; dsbuild build "
+          "writes it again, dsbuild verify tells more",
+          (folder / file).string(), k_sums);
+}
+
 class Export {
  public:
   explicit Export(const ExportRequest& request) : request_(request) { check_request(); }
@@ -73,7 +92,7 @@ class Export {
   void check_found() const;
   /// Notes the model, so that keys of all images are known to differ.
   void add_key(const ImageRecord& image);
-  void check_keys() const;
+  void find_shared_names();
   std::string key_of(const ImageRecord& image) const;
   /// A file of the licences' list may have an ending that the manifest leaves out.
   bool is_licensed(const std::string& asset) const;
@@ -88,6 +107,7 @@ class Export {
   std::set<std::string> splits_;               ///< of all images
   std::map<std::string, std::string> models_;  ///< by what their images' keys begin with
   std::set<std::string> shared_stems_;         ///< of several models
+  std::set<std::string> shared_names_;         ///< models of one name, though with their endings
   std::set<std::string> licensed_, unlicensed_;
   ExportResult result_;
 };
@@ -133,17 +153,27 @@ std::string Export::split_of(const ImageRecord& image) const {
   return has_splits_ ? image.split : "train";
 }
 
+/// A split names files and folders.
+void check_split(const ImageRecord& image) {
+  const bool known = image.split.empty() || image.split == "train" || image.split == "test";
+  if (!known)
+    fail(ErrorKind::asset, "the image {}: wanted the split train, test or none, got {:?}", image.id,
+         image.split);
+}
+
 void Export::look() {
   std::error_code error;
   if (!fs::is_regular_file(request_.folder / k_images, error))
     fail(ErrorKind::usage,
          "{}: wanted the folder of a dataset that dsbuild built, found no {} in it",
          request_.folder.string(), k_images);
+  check_manifest(request_.folder);
   input_.folder = request_.folder;
   input_.dataset = read_dataset_manifest(request_.folder);
   has_classes_ = !input_.dataset.class_paths.empty();
   input_.classes = has_classes_ ? input_.dataset.class_paths : std::vector<std::string>{"object"};
   visit_images(request_.folder, [&](const ImageRecord& image) {
+    check_split(image);
     if (!image.split.empty()) splits_.insert(image.split);
   });
   has_splits_ = !splits_.empty();
@@ -225,25 +255,22 @@ void Export::check_found() const {
 }
 
 void Export::add_key(const ImageRecord& image) {
-  const std::string stem = export_key(image.model, image.model, false);
+  const std::string stem = export_key(image.model, image.model, KeyForm::stem);
   const auto [at, is_new] = models_.try_emplace(stem, image.model);
   if (!is_new && at->second != image.model) shared_stems_.insert(stem);
 }
 
-/// With their endings names of models may still be one: a "." and a "_" are.
-void Export::check_keys() const {
+/// With their endings names of models may still be one: a "." and a "_" are. These get a hash.
+void Export::find_shared_names() {
   std::map<std::string, std::string> models;
   visit_images(request_.folder, [&](const ImageRecord& image) {
     if (!left_out(image).empty()) return;
-    const bool shared = shared_stems_.contains(export_key(image.model, image.model, false));
-    const auto [at, is_new] =
-        models.try_emplace(export_key(image.model, image.model, shared), image.model);
-    if (!is_new && at->second != image.model)
-      fail(ErrorKind::asset,
-           "the models {} and {} have one name in an export, {}; rename one of them, or leave one "
-           "out "
-           "(--filter)",
-           at->second, image.model, at->first);
+    const KeyForm form = shared_stems_.contains(export_key(image.model, image.model, KeyForm::stem))
+                             ? KeyForm::ending
+                             : KeyForm::stem;
+    const std::string name = export_key(image.model, image.model, form);
+    const auto [at, is_new] = models.try_emplace(name, image.model);
+    if (!is_new && at->second != image.model) shared_names_.insert({at->second, image.model});
   });
 }
 
@@ -254,8 +281,9 @@ bool Export::is_licensed(const std::string& asset) const {
 }
 
 std::string Export::key_of(const ImageRecord& image) const {
-  return export_key(image.id, image.model,
-                    shared_stems_.contains(export_key(image.model, image.model, false)));
+  if (shared_names_.contains(image.model)) return export_key(image.id, image.model, KeyForm::hash);
+  const bool shared = shared_stems_.contains(export_key(image.model, image.model, KeyForm::stem));
+  return export_key(image.id, image.model, shared ? KeyForm::ending : KeyForm::stem);
 }
 
 void Export::note_kinds(ExportFolder& to) const {
@@ -286,7 +314,7 @@ ExportResult Export::run(const std::function<void(std::uint64_t, std::uint64_t)>
                          const std::atomic<bool>& stop) {
   look();
   check_found();
-  if (!shared_stems_.empty()) check_keys();
+  if (!shared_stems_.empty()) find_shared_names();
   ExportFolder to(request_.folder, request_.to, request_.copy);
   const std::unique_ptr<Exporter> exporter = type_->make(input_, to);
   for (const std::string& note : request_.notes)
@@ -329,17 +357,24 @@ ExportResult Export::run(const std::function<void(std::uint64_t, std::uint64_t)>
 
 }  // namespace
 
-std::string export_key(std::string_view id, std::string_view model, bool with_ending) {
+std::string export_key(std::string_view id, std::string_view model, KeyForm form) {
+  constexpr std::size_t k_most_bytes = 64;  // more of it stands behind, and tar takes 100
   const std::size_t dot = model.rfind('.');
   const bool has_ending = dot != model.npos && dot > model.rfind('/') + 1;
-  std::string key(has_ending && !with_ending ? model.substr(0, dot) : model);
+  std::string key(has_ending && form == KeyForm::stem ? model.substr(0, dot) : model);
+  if (form == KeyForm::hash || key.size() > k_most_bytes) {
+    std::size_t end = std::min(key.size(), k_most_bytes - 9);
+    while (end > 0 && end < key.size() && (static_cast<unsigned char>(key[end]) & 0xc0U) == 0x80)
+      --end;  // no character is torn
+    key = fmt::format("{}_{}", key.substr(0, end), hash_text(model).hex().substr(0, 8));
+  }
   key += id.substr(std::min(id.size(), model.size()));
-  for (std::size_t i = 0; i < key.size(); ++i) {
-    const auto c = static_cast<unsigned char>(key[i]);
+  for (char& c : key) {
+    const auto code = static_cast<unsigned char>(c);
     if (c == '/')
-      key[i] = '-';
-    else if (c <= ' ' || c == 0x7f || c == '.' || c == '\\')
-      key[i] = '_';
+      c = '-';
+    else if (code <= ' ' || code == 0x7f || c == '.' || c == '\\')
+      c = '_';
   }
   return key;
 }

@@ -43,8 +43,15 @@ ExportResult export_dataset(const ExportRequest& request,
                             const std::function<void(std::uint64_t, std::uint64_t)>& progress,
                             const std::atomic<bool>& stop);
 
-/// "mug-1-3" of the image "mug.ply/1-3" of the model "mug.ply"; "mug_ply-1-3" with the ending.
-std::string export_key(std::string_view id, std::string_view model, bool with_ending);
+/// What a model's part of a key is made of.
+enum class KeyForm {
+  stem,    ///< "mug" of "mug.ply"
+  ending,  ///< "mug_ply"
+  hash     ///< "mug_ply_1b2c3d4e", of its whole name
+};
+/// "mug-1-3" of the image "mug.ply/1-3" of the model "mug.ply". A model's name of over 64 bytes is cut and
+/// has a hash.
+std::string export_key(std::string_view id, std::string_view model, KeyForm form);
 
 /// Whether the text is what the pattern says: * any text, ? any one character, else itself.
 bool matches_pattern(std::string_view text, std::string_view pattern);

@@ -43,6 +43,18 @@ void rename_or_exchange(const fs::path& from, const fs::path& to) {
   fs::remove_all(aside, error);
 }
 
+std::string checked(std::string path) {
+  check_manifest_path(path);
+  return path;
+}
+
+/// As it is under all links, where that can be told.
+fs::path place_of(const fs::path& path) {
+  std::error_code error;
+  const fs::path real = fs::weakly_canonical(path, error);
+  return error ? fs::absolute(path).lexically_normal() : real;
+}
+
 bool is_inside(const fs::path& path, const fs::path& folder) {
   const auto [end, at] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
   return end == folder.end();
@@ -77,10 +89,13 @@ void check_own(const fs::path& to) {
 }  // namespace
 
 std::string read_checked(const fs::path& folder, const FileRecord& file) {
+  check_manifest_path(file.path);
   std::error_code error;
   if (!fs::exists(folder / file.path, error))
     fail(ErrorKind::asset, "{}: is missing; dsbuild build makes it again",
          (folder / file.path).string());
+  if (!fs::is_regular_file(folder / file.path, error))
+    fail(ErrorKind::asset, "{}: is no regular file", (folder / file.path).string());
   std::string bytes = read_text_file(folder / file.path);
   if (hash_text(bytes) != file.hashes.xxh128)
     fail(ErrorKind::asset,
@@ -97,26 +112,30 @@ ExportFolder::ExportFolder(fs::path from, fs::path to, bool copy)
   // What a link leads to is written, and the link stays.
   std::error_code error;
   if (const fs::path real = fs::canonical(to_, error); !error) to_ = real;
-  check_apart(fs::weakly_canonical(from_, error), fs::weakly_canonical(to_, error));
+  check_apart(place_of(from_), place_of(to_));
   const bool replaces = fs::exists(to_ / k_export_record, error);
   if (fs::exists(to_, error) && !replaces &&
       !(fs::is_directory(to_, error) && fs::is_empty(to_, error)))
     fail(ErrorKind::usage, "-o {}: is there already and no export of dsbuild; wanted a new folder",
          to_.string());
   if (replaces) check_own(to_);
-  folder_ = make_process_folder(to_.parent_path() / k_work_folder) / to_.filename();
+  work_.path = make_process_folder(to_.parent_path() / k_work_folder);
+  folder_ = work_.path / to_.filename();
   make_folders(folder_);
 }
 
-ExportFolder::~ExportFolder() {
-  batch_.reset();
+ExportFolder::~ExportFolder() = default;
+
+ExportFolder::WorkFolder::~WorkFolder() {
+  if (path.empty()) return;
   std::error_code ignored;
-  fs::remove_all(folder_.parent_path(), ignored);
-  fs::remove(folder_.parent_path().string() + ".lock", ignored);
-  fs::remove(folder_.parent_path().parent_path(), ignored);  // where no other export is under way
+  fs::remove_all(path, ignored);
+  fs::remove(path.string() + ".lock", ignored);
+  fs::remove(path.parent_path(), ignored);  // where no other export is under way
 }
 
 void ExportFolder::enter(const std::string& path, Hash128 hash, std::uint64_t bytes) {
+  check_manifest_path(path);
   if (!checksums_.emplace(path, hash).second)
     fail(ErrorKind::asset, "two images would be exported as {}", path);
   bytes_ += bytes;
@@ -129,8 +148,9 @@ void ExportFolder::flush() {
 }
 
 void ExportFolder::place(const FileRecord& file, const std::string& path) {
+  check_manifest_path(file.path);
   std::error_code error;
-  if (!fs::exists(from_ / file.path, error) ||
+  if (!fs::is_regular_file(from_ / file.path, error) ||
       content_hash(from_ / file.path) != file.hashes.xxh128)
     read_checked(from_, file);  // throws
   enter(path, file.hashes.xxh128, file.hashes.size_bytes);
@@ -143,12 +163,13 @@ void ExportFolder::place(const FileRecord& file, const std::string& path) {
 }
 
 void ExportFolder::write(const std::string& path, std::string_view text) {
+  check_manifest_path(path);
   enter(path, hash_text(text), text.size());
   write_file_atomic(folder_ / path, text);
 }
 
 ExportFolder::Stream::Stream(ExportFolder& folder, std::string path)
-    : folder_(folder), path_(std::move(path)), writer_(folder.folder_ / path_) {}
+    : folder_(folder), path_(checked(std::move(path))), writer_(folder.folder_ / path_) {}
 
 void ExportFolder::Stream::write(std::string_view text) {
   writer_.write(text);

@@ -71,6 +71,13 @@ class ExportFolder {
   void enter(const std::string& path, Hash128 hash, std::uint64_t bytes);
   void flush();
 
+  /// Removed with all that is in it, also where an export fails as it begins.
+  struct WorkFolder {
+    std::filesystem::path path;
+    ~WorkFolder();
+  };
+
+  WorkFolder work_;  ///< before `batch_`, which writes into it
   std::filesystem::path from_, to_, folder_;
   bool copy_;
   std::map<std::string, Hash128> checksums_;

@@ -5,6 +5,7 @@ import json
 import os
 import shutil
 import signal
+import subprocess
 import tarfile
 import time
 
@@ -293,12 +294,49 @@ class ExportTest(TinyCase):
         self.export("csv")
         names = {path.name for path in (self.to / "images").iterdir()}
         self.assertLessEqual({"box-0.png", "tetra_ply-0.png", "tetra_off-0.png"}, names)
-        # With its ending tetra.ply is tetra_ply, and so is tetra_ply.off without.
+        # With its ending tetra.ply is tetra_ply, and so is tetra_ply.off without: both get a hash of their own.
         shutil.copy(self.tiny / "models/box.off", self.tiny / "models/tetra_ply.off")
-        self.build()
+        self.build("--set", "classes.unlisted=keep")
+        self.export("csv")
+        names = sorted(path.name for path in (self.to / "images").iterdir())
+        self.assertEqual(len(names), 2 * IMAGES)
+        self.assertEqual(len([name for name in names if name.startswith("tetra_ply_")]), IMAGES)
+
+    def test_a_manifest_that_was_edited_is_not_handed_on(self):
+        manifest = self.out / "manifest/images.jsonl"
+        whole = manifest.read_text()
+        secret = self.folder / "secret.png"
+        secret.write_bytes((self.out / "images/box.off/0.png").read_bytes())
+        for before, after in (("solid/box", "solid/ox"), ('"split":"train"', '"split":"x/../../../../gone"'),
+                              ("images/box.off/0.png", "../secret.png"), ("images/box.off/0.png", str(secret))):
+            edited = whole.replace(before, after)
+            self.assertNotEqual(edited, whole)
+            manifest.write_text(edited)
+            run = self.run_it("export", self.out, "--format", "coco", "-o", self.to)
+            self.assertEqual(run.code, 1, run)
+            self.assertIn("images.jsonl: is not what manifest/checksums.xxh128 says", run.err)
+            # And where the checksums were edited with it.
+            sums = self.out / "manifest/checksums.xxh128"
+            kept = sums.read_text()
+            digest = subprocess.run(["xxhsum", "-H128", manifest], capture_output=True, text=True, check=True).stdout
+            sums.write_text("".join(f"{digest.split()[0]}  manifest/images.jsonl\n" if "images.jsonl" in line
+                                    else line + "\n" for line in kept.splitlines()))
+            if before != "solid/box":
+                for format in FORMATS:
+                    run = self.run_it("export", self.out, "--format", format, "-o", self.to)
+                    self.assertEqual(run.code, 1, run)
+            sums.write_text(kept)
+        manifest.write_text(whole)
+        self.assertEqual({path.name for path in self.folder.iterdir()}, {"tiny", "out", "secret.png"})
+        # What is no regular file is not waited for.
+        picture = self.out / "images/box.off/0.png"
+        picture.unlink()
+        os.mkfifo(picture)
         run = self.run_it("export", self.out, "--format", "csv", "-o", self.to)
+        self.assertIn("0.png: is no regular file", run.err)
+        run = self.run_it("export", self.out, "--format", "csv", "-o", self.folder / ("x" * 256))
         self.assertEqual(run.code, 1, run)
-        self.assertIn("have one name in an export, tetra_ply; rename one of them", run.err)
+        self.assertEqual({path.name for path in self.folder.iterdir()}, {"tiny", "out", "secret.png"})
 
     def test_images_without_a_class(self):
         (self.tiny / "test.cla").write_text("PSB 1\n1 0\nspike 0 0\n")

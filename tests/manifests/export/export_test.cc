@@ -12,13 +12,30 @@ namespace {
 using testing::ElementsAre;
 
 TEST(ExportKey, IsOneWordWithoutDots) {
-  EXPECT_EQ(export_key("mug.ply/1", "mug.ply", false), "mug-1");
-  EXPECT_EQ(export_key("mug.ply/1-red-room", "mug.ply", false), "mug-1-red-room");
-  EXPECT_EQ(export_key("mug.ply/1", "mug.ply", true), "mug_ply-1");
-  EXPECT_EQ(export_key("my mug.v2.ply/1", "my mug.v2.ply", false), "my_mug_v2-1");
-  EXPECT_EQ(export_key("chairs/a.off/3", "chairs/a.off", false), "chairs-a-3");
-  EXPECT_EQ(export_key("v1.0/a/3", "v1.0/a", false), "v1_0-a-3");
-  EXPECT_EQ(export_key("t\xc3\xbcr.off/0", "t\xc3\xbcr.off", false), "t\xc3\xbcr-0");
+  EXPECT_EQ(export_key("mug.ply/1", "mug.ply", KeyForm::stem), "mug-1");
+  EXPECT_EQ(export_key("mug.ply/1-red-room", "mug.ply", KeyForm::stem), "mug-1-red-room");
+  EXPECT_EQ(export_key("mug.ply/1", "mug.ply", KeyForm::ending), "mug_ply-1");
+  EXPECT_EQ(export_key("my mug.v2.ply/1", "my mug.v2.ply", KeyForm::stem), "my_mug_v2-1");
+  EXPECT_EQ(export_key("chairs/a.off/3", "chairs/a.off", KeyForm::stem), "chairs-a-3");
+  EXPECT_EQ(export_key("v1.0/a/3", "v1.0/a", KeyForm::stem), "v1_0-a-3");
+  EXPECT_EQ(export_key("t\xc3\xbcr.off/0", "t\xc3\xbcr.off", KeyForm::stem), "t\xc3\xbcr-0");
+}
+
+TEST(ExportKey, OfLongNamesIsShortAndTheirOwn) {
+  const std::string a = std::string(250, 'a') + "b.off", b = std::string(250, 'a') + "c.off";
+  const std::string key = export_key(a + "/12", a, KeyForm::stem);
+  EXPECT_EQ(key.size(), 64u + 3u);
+  EXPECT_TRUE(key.ends_with("-12")) << key;
+  EXPECT_NE(key, export_key(b + "/12", b, KeyForm::stem));
+  // No character of two bytes is torn.
+  std::string wide;
+  for (int i = 0; i < 60; ++i)
+    wide += "\xc3\xbc";
+  const std::string cut = export_key(wide, wide, KeyForm::stem);
+  EXPECT_EQ(cut.substr(0, 54), wide.substr(0, 54));
+  EXPECT_EQ(cut[54], '_');
+  EXPECT_NE(export_key("a b.off", "a b.off", KeyForm::hash),
+            export_key("a_b.off", "a_b.off", KeyForm::hash));
 }
 
 TEST(Patterns, AreGlobs) {
