@@ -7,6 +7,10 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -46,24 +50,61 @@ TEST(Sqlite, KeepsEveryByteOfAText) {
   EXPECT_EQ(row.text(0), "");
 }
 
-TEST(Sqlite, WaitsForAnotherWriter) {
-  const TemporaryFolder folder;
-  const auto file = folder.path() / "db.sqlite";
+/// One writer holds the database until the other has asked for it, and a while longer.
+struct TwoWriters {
+  bool entered_early = false;          ///< the other was let in while the first held it
+  std::string error;                   ///< of the other; empty: it was let in
+  std::chrono::milliseconds waited{};  ///< by the other
+};
+
+TwoWriters write_at_once(const std::filesystem::path& file, std::chrono::milliseconds hold) {
+  TwoWriters result;
   Connection first(file);
-  first.execute("CREATE TABLE t (a)");
   auto held = std::make_unique<Transaction>(first);
+  std::atomic<bool> asked{false}, released{false};
   std::thread other([&] {
-    Connection second(file);
-    Transaction transaction(second);  // waits
-    second.execute("INSERT INTO t VALUES (2)");
-    transaction.commit();
+    try {
+      Connection second(file);
+      asked = true;
+      const auto start = std::chrono::steady_clock::now();
+      Transaction transaction(second);
+      result.waited = std::chrono::duration_cast<std::chrono::milliseconds>(
+          std::chrono::steady_clock::now() - start);
+      result.entered_early = !released;
+      second.execute("INSERT INTO t VALUES (2)");
+      transaction.commit();
+    } catch (const Error& error) {
+      result.error = error.what();
+    }
+    asked = true;
   });
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  while (!asked)
+    std::this_thread::yield();
+  std::this_thread::sleep_for(hold);
   first.execute("INSERT INTO t VALUES (1)");
+  released = true;
   held->commit();
   held.reset();
   other.join();
-  EXPECT_EQ(count_rows(first), 2);
+  return result;
+}
+
+// Where the machine is busy the other may ask when the first has let go already, which shows
+// nothing: then the first holds on for longer.
+TEST(Sqlite, WaitsForAnotherWriter) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "db.sqlite";
+  Connection(file).execute("CREATE TABLE t (a)");
+  std::int64_t rows = 0;
+  for (std::chrono::milliseconds hold{50}; hold.count() < 10'000; hold *= 2) {
+    const TwoWriters writers = write_at_once(file, hold);
+    ASSERT_EQ(writers.error, "");
+    ASSERT_FALSE(writers.entered_early);
+    Connection connection(file);
+    ASSERT_EQ(count_rows(connection), rows += 2);
+    if (2 * writers.waited >= hold) return;
+  }
+  FAIL() << "the second writer never asked while the first held the database";
 }
 
 TEST(Sqlite, TellsADamagedFileFromOtherTrouble) {

@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <random>
 
@@ -468,19 +468,25 @@ TEST(StrangeRays, End) {
     else
       (where % 3 == 0 ? v.x : where % 3 == 1 ? v.y : v.z) = value;
   }
+  // Processor time, which others on the machine hardly change: all of it is the device's threads'.
   const auto seconds = [&](const std::vector<TestRay>& all) {
-    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t start = std::clock();
     tree.nearest(all);
     tree.any(all);
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   };
   seconds(plain);  // what the first run alone pays for
-  // Embree asks 2.5; a busy machine is given more. What matters is that it ends.
-  EXPECT_LT(seconds(strange), 20 * seconds(plain) + 0.5);
-  for (const TestHit& hit : tree.nearest(strange))
-    if (hit.met()) {
-      ASSERT_LT(hit.id, mesh.triangles.size());
+  const double usual = seconds(plain);
+  // Embree asks 2.5; measured are 2 to 4.3.
+  EXPECT_LT(seconds(strange), 8 * usual + 0.02);
+  const std::vector<TestHit> hits = tree.nearest(strange);
+  const std::vector<std::uint32_t> any = tree.any(strange);
+  for (std::size_t i = 0; i < strange.size(); ++i) {
+    EXPECT_EQ(any[i] != 0, hits[i].met()) << i;
+    if (hits[i].met()) {
+      ASSERT_LT(hits[i].id, mesh.triangles.size());
     }
+  }
 }
 
 TEST(ManyTriangles, AMillionKeepTheirHits) {
