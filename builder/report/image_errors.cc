@@ -3,6 +3,7 @@
 
 #include "builder/report/fit.h"
 #include "tracer/base/error.h"
+#include "tracer/base/luminance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +18,9 @@ constexpr double k_trimmed = 0.001;
 /// Of the mean luminance squared: keeps a black pixel's error finite.
 constexpr double k_relative_floor = 0.01;
 
-double luminance(const Film& film, std::size_t pixel) {
-  return 0.2126 * double{film.rgb[3 * pixel]} + 0.7152 * double{film.rgb[3 * pixel + 1]} +
-         0.0722 * double{film.rgb[3 * pixel + 2]};
+double luminance_at(const Film& film, std::size_t pixel) {
+  return luminance(
+      Vec3{film.rgb[3 * pixel], film.rgb[3 * pixel + 1], film.rgb[3 * pixel + 2]});
 }
 
 std::size_t pixel_count(const Film& film) {
@@ -54,7 +55,7 @@ double pixel_rel_mse(const Film& film, const Reference& reference, std::size_t p
 double mean_luminance(const Film& film) {
   double sum = 0;
   for (std::size_t i = 0; i < pixel_count(film); ++i)
-    sum += luminance(film, i);
+    sum += luminance_at(film, i);
   return sum / static_cast<double>(pixel_count(film));
 }
 
@@ -66,8 +67,8 @@ LinearErrors linear_errors(const Film& film, const Reference& reference) {
   LinearErrors errors;
   std::vector<double> pixels(pixel_count(film));
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const double x = luminance(film, i);
-    errors.mean_square += (x - luminance(reference.a, i)) * (x - luminance(reference.b, i));
+    const double x = luminance_at(film, i);
+    errors.mean_square += (x - luminance_at(reference.a, i)) * (x - luminance_at(reference.b, i));
     pixels[i] = pixel_rel_mse(film, reference, i, floor);
   }
   const double count = static_cast<double>(pixels.size());
@@ -104,8 +105,8 @@ BiasSquare relative_bias_square(const Film& x1, const Film& x2, const Reference&
   if (mean <= 0) return {};
   std::vector<double> products(pixel_count(x1));
   for (std::size_t i = 0; i < products.size(); ++i)
-    products[i] = (luminance(x1, i) - luminance(reference.a, i)) *
-                  (luminance(x2, i) - luminance(reference.b, i)) / (mean * mean);
+    products[i] = (luminance_at(x1, i) - luminance_at(reference.a, i)) *
+                  (luminance_at(x2, i) - luminance_at(reference.b, i)) / (mean * mean);
   return {mean_of(products),
           deviation_of(products) / std::sqrt(static_cast<double>(products.size()))};
 }

@@ -2,6 +2,7 @@
 #include "builder/report/plain_sums.h"
 
 #include "tracer/base/error.h"
+#include "tracer/base/luminance.h"
 #include "tracer/kernels/layout.h"
 #include "tracer/render/film_error.h"
 
@@ -13,11 +14,10 @@ namespace {
 /// Luminance of the pixel whose first value is the `i`-th.
 template <typename Values>
 double pixel_luminance(const Values& values, std::size_t i) {
-  constexpr double weights[3] = {k_luminance_r, k_luminance_g, k_luminance_b};
   double sum = 0;
   for (std::size_t q = 0; q < 4; ++q)
     for (std::size_t c = 0; c < 3; ++c)
-      sum += weights[c] * double{values[i + (3 * q + c) * kernels::k_tile_pixels]};
+      sum += k_luminance_weights[c] * double{values[i + (3 * q + c) * kernels::k_tile_pixels]};
   return sum;
 }
 

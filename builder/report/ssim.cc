@@ -3,6 +3,7 @@
 
 #include "builder/report/channel.h"
 #include "tracer/base/error.h"
+#include "tracer/base/luminance.h"
 
 #include <cstdint>
 
@@ -19,7 +20,7 @@ Channel luma(const Picture& picture) {
   Channel channel(picture.width, picture.height);
   const std::uint8_t* p = picture.pixels.data();
   for (double& value : channel.values) {
-    value = 0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2];
+    value = luminance(Vec3d{double(p[0]), double(p[1]), double(p[2])});
     p += 3;
   }
   return channel;

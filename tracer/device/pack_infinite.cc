@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/canonical.h"
+#include "tracer/base/luminance.h"
 #include "tracer/device/pack_rows.h"
 #include "tracer/kernels/all_nodes.h"
 
@@ -23,7 +24,7 @@ double texel_luminance(const Image& image, int column, int row) {
   const std::size_t at =
       3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
            static_cast<std::size_t>(column));
-  return luminance({image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]});
+  return luminance(Vec3{image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]});
 }
 
 /// Weights of the cells of lights/infinite.h, row by row, and the sine that stands for each row.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/error.h"
+#include "tracer/base/luminance.h"
 #include "tracer/device/pack_rows.h"
 #include "tracer/kernels/all_nodes.h"
 
@@ -9,10 +10,6 @@
 #include <numeric>
 
 namespace ds {
-
-double luminance(Vec3 color) {
-  return 0.2126 * double{color.x} + 0.7152 * double{color.y} + 0.0722 * double{color.z};
-}
 
 void add_cumulative(const std::vector<double>& weights, Words& tables) {
   const double total = std::accumulate(weights.begin(), weights.end(), 0.0);

@@ -16,9 +16,6 @@ struct LightRow {
   Words parameters;
 };
 
-/// Rec.709 luminance.
-double luminance(Vec3 color);
-
 /// Appends cumulative shares as floats; the last of positive share and all behind it are exactly 1.
 void add_cumulative(const std::vector<double>& weights, Words& tables);
 

@@ -2,6 +2,7 @@
 #include "tracer/render/develop.h"
 
 #include "tracer/base/error.h"
+#include "tracer/base/luminance.h"
 #include "tracer/render/strict_math.h"
 
 #include <algorithm>
@@ -11,8 +12,8 @@
 namespace ds {
 namespace {
 
-double luminance(const float* rgb) {
-  return 0.212671 * double{rgb[0]} + 0.715160 * double{rgb[1]} + 0.072169 * double{rgb[2]};
+double luminance_at(const float* rgb) {
+  return luxcore_luminance(Vec3{rgb[0], rgb[1], rgb[2]});
 }
 
 std::size_t pixel_count(const Film& film) {
@@ -26,7 +27,7 @@ double autolinear_scale(const Film& film, double gamma) {
   const std::size_t count = pixel_count(film);
   double sum = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const double y = luminance(film.rgb.data() + i * 3);
+    const double y = luminance_at(film.rgb.data() + i * 3);
     if (y > 0 && std::isfinite(y)) sum += y;
   }
   const double mean = sum / static_cast<double>(count);
@@ -37,7 +38,7 @@ double reinhard02_scale(const Film& film) {
   const std::size_t count = pixel_count(film);
   double sum = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const double y = luminance(film.rgb.data() + i * 3);
+    const double y = luminance_at(film.rgb.data() + i * 3);
     if (std::isfinite(y)) sum += strict_log(std::max(y, 1e-6));
   }
   return 0.1 / strict_exp(sum / static_cast<double>(count));
@@ -48,7 +49,7 @@ double pixel_factor(const float* rgb, const ToneMap& tone_map, double scale) {
   if (tone_map.kind != ToneMap::Kind::reinhard02) return scale;
   const double burn = tone_map.burn;
   const double inverse_burn2 = burn > 0 ? 1.0 / (burn * burn) : 1e5;
-  const double y = luminance(rgb) * scale / double{tone_map.prescale};
+  const double y = luminance_at(rgb) * scale / double{tone_map.prescale};
   return scale * double{tone_map.postscale} * (1.0 + y * inverse_burn2) / (1.0 + y);
 }
 

@@ -2,6 +2,7 @@
 #include "tracer/render/film.h"
 
 #include "tracer/base/error.h"
+#include "tracer/base/luminance.h"
 #include "tracer/base/parallel.h"
 #include "tracer/kernels/layout.h"
 #include "tracer/render/film_error.h"
@@ -29,11 +30,10 @@ std::uint64_t count(const FilmSums& sums, std::size_t plane) {
 double removed_share(const FilmSums& sums) {
   const double removed = total(sums, kernels::k_film_removed);
   if (!(removed > 0)) return 0;
-  constexpr double weights[3] = {k_luminance_r, k_luminance_g, k_luminance_b};
   double kept = 0;
   for (std::size_t q = 0; q < 4; ++q)
     for (std::size_t c = 0; c < 3; ++c)
-      kept += weights[c] * total(sums, q * kernels::k_film_quarter + kernels::k_film_sum + c);
+      kept += k_luminance_weights[c] * total(sums, q * kernels::k_film_quarter + kernels::k_film_sum + c);
   return removed / (kept + removed);
 }
 

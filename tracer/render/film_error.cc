@@ -2,6 +2,7 @@
 #include "tracer/render/film_error.h"
 
 #include "tracer/base/error.h"
+#include "tracer/base/luminance.h"
 #include "tracer/render/strict_math.h"
 
 #include <algorithm>
@@ -10,9 +11,8 @@
 namespace ds {
 namespace {
 
-double luminance(const float* rgb) {
-  return k_luminance_r * double{rgb[0]} + k_luminance_g * double{rgb[1]} +
-         k_luminance_b * double{rgb[2]};
+double luminance_at(const float* rgb) {
+  return luminance(Vec3{rgb[0], rgb[1], rgb[2]});
 }
 
 }  // namespace
@@ -35,8 +35,8 @@ std::optional<ErrorEstimate> luminance_error(const Film& film, const PixelFilter
   ErrorSum sum;
   double mean = 0;
   for (std::size_t i = 0; i < pixels; ++i) {
-    const double d = luminance(film.halves.data() + 3 * i);
-    mean += luminance(film.rgb.data() + 3 * i);
+    const double d = luminance_at(film.halves.data() + 3 * i);
+    mean += luminance_at(film.rgb.data() + 3 * i);
     sum.add(d * d);
   }
   const auto count = static_cast<double>(pixels);

@@ -9,8 +9,6 @@
 
 namespace ds {
 
-/// Rec.709 luminance of linear r, g, b, as the kernels weigh it.
-inline constexpr double k_luminance_r = 0.2126, k_luminance_g = 0.7152, k_luminance_b = 0.0722;
 
 /// A root mean squared error and its 95 % interval.
 struct ErrorEstimate {

@@ -4,6 +4,7 @@
 #include "tracer/base/error.h"
 #include "tracer/base/hash.h"
 #include "tracer/base/log.h"
+#include "tracer/base/luminance.h"
 #include "tracer/render/image_files.h"
 #include "tracer/render/image_meaning.h"
 #include "tracer/render/strict_math.h"
@@ -99,7 +100,9 @@ Vec3 select(Vec3 color, float alpha, ImageChannel channel) {
     case ImageChannel::mean:
       return grey((color.x + color.y + color.z) / 3.0f);
     case ImageChannel::colored_mean:
-      return grey(0.212671f * color.x + 0.715160f * color.y + 0.072169f * color.z);
+      return grey(static_cast<float>(k_luxcore_weights[0]) * color.x +
+                  static_cast<float>(k_luxcore_weights[1]) * color.y +
+                  static_cast<float>(k_luxcore_weights[2]) * color.z);
   }
   DS_ASSERT(false);
   return {};

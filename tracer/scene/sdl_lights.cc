@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tracer/base/luminance.h"
 #include "tracer/scene/sdl_math.h"
 #include "tracer/scene/sdl_reader.h"
 #include "tracer/scene/sky_model.h"
@@ -25,7 +26,7 @@ Vec3d lamp_intensity(const SdlNode& node, double gain_steradians, double power_s
   const bool normalize = node.flag("normalizebycolor");
   const Vec3d base = common_factor(node) * color;
   if (!(power > 0 && efficiency > 0)) return base * (1 / gain_steradians);
-  const double y = normalize ? portable::luminance(color) : 1;
+  const double y = normalize ? luxcore_luminance(color) : 1;
   if (!(y > 0)) {
     node.error("color", "wanted a colour above 0 to normalise by");
     return base;

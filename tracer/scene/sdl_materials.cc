@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tracer/base/luminance.h"
 #include "tracer/scene/fresnel_presets.h"
 #include "tracer/scene/sdl_math.h"
 #include "tracer/scene/sdl_physical.h"
@@ -122,7 +123,7 @@ const std::vector<Finish>& finishes() {
 /// it is 0.
 std::optional<double> emission_luminance(const SdlNode& node, std::string_view property,
                                          const TextureRef& emission) {
-  const double y = portable::luminance(to_double(emission.constant));
+  const double y = luxcore_luminance(emission.constant);
   if (y > 0) return y;
   node.error(property, "wanted an emission colour above 0 to normalise by");
   return std::nullopt;

@@ -23,11 +23,6 @@ inline double radians(double degrees) {
   return degrees * (k_pi / 180.0);
 }
 
-/// Luminance of linear Rec.709 (ITU-R BT.709).
-inline double luminance(Vec3d c) {
-  return 0.212671 * c.x + 0.715160 * c.y + 0.072169 * c.z;
-}
-
 /// Inverse of an affine matrix. `determinant` of the upper 3x3 must not be 0.
 Mat4 inverse(const Mat4& m);
 double determinant(const Mat4& m);

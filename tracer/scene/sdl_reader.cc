@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/scene/sdl_reader.h"
 
+#include "tracer/base/luminance.h"
 #include "tracer/base/nearest.h"
 #include "tracer/scene/sdl_math.h"
 
@@ -278,7 +279,7 @@ std::optional<TextureRef> SdlNode::texture(std::string_view property) const {
     if (width == 1 && value.texture < 0) {
       const Vec3 c = value.constant;
       if (c.x != c.y || c.y != c.z) {
-        const float y = static_cast<float>(portable::luminance(to_double(c)));
+        const float y = static_cast<float>(luxcore_luminance(c));
         value.constant = {y, y, y};
       }
     }

@@ -2,6 +2,7 @@
 #include "tracer/scene/sky_model.h"
 
 #include "tracer/base/hash.h"
+#include "tracer/base/luminance.h"
 #include "tracer/scene/sdl_math.h"
 #include "tracer/scene/sky_coefficients.h"
 #include "tracer/scene/sun_model.h"
@@ -75,7 +76,7 @@ SkyModel::SkyModel(const SkySettings& settings) : settings_(settings) {
   from_ground_ = settings.ground_albedo * (sun + irradiance_of_clear_sky()) * (1 / portable::k_pi);
   Ring ring;
   const double brightness =
-      settings.ground_autoscale ? portable::luminance(sky({0, 0, 1}, ring)) : 1;
+      settings.ground_autoscale ? luxcore_luminance(sky({0, 0, 1}, ring)) : 1;
   ground_ = settings.ground_color * brightness;
 }
 
