@@ -72,7 +72,7 @@ enum class Option {
   report_file,
   against,
   report_size,  ///< how much is measured
-  forecast,     ///< what time and disk are foretold for
+  forecast,     ///< what time and disk are forecast for
 };
 
 /// A verb of the command. `run` returns the exit code: 0 where all is well, 1 where something

@@ -213,13 +213,13 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
       verb.add_flag("--no-choices", to.no_choices, "leave out what settings and effects cost");
       return;
     case Option::forecast:
-      verb.add_flag("--time", to.time, "foretell time and disk of what is stale");
+      verb.add_flag("--time", to.time, "forecast time and disk of what is stale");
       add_number(verb, "--error", to.error, {.least = 1e-6, .most = 1},
-                 "foretell them for this relative error of every picture (0.02)");
+                 "forecast them for this relative error of every picture (0.02)");
       verb.add_option("--budget", to.budget, "say which error this time buys (8h, 90m)")
           ->type_name("TIME");
       verb.add_flag("--recalibrate", to.recalibrate,
-                    "measure anew what is foretold from; else once for each program and device");
+                    "measure anew what forecasts are made from; else once for each program and device");
       return;
     case Option::seed:
       add_number(verb, "--seed", to.seed, k_any_count, "chooses the images of --rerender [0]");

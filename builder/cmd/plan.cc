@@ -36,7 +36,7 @@ nlohmann::json plan_json(const Plan& plan, const PlanCounts& counts) {
   return object;
 }
 
-/// What is to be foretold.
+/// What is to be forecast.
 struct Wish {
   bool any = false;
   std::optional<double> error, budget_seconds;
@@ -109,7 +109,7 @@ Answer answer_budget(double seconds, int max_spp, const std::vector<ProbedWork>&
   answer.sentence += fmt::format(", the least with engine.max_spp = {}", max_spp);
   const std::optional<Bought> most = error_for(work, seconds, k_most_spp);
   if (!most || most->error.value >= error.value) return answer;
-  // A power of two at least: what is foretold of single pictures is not exact.
+  // A power of two at least: what is forecast of single pictures is not exact.
   const double needed = std::min(most_spp_for(work, most->error.value), k_most_spp);
   const auto rounded = std::bit_ceil(static_cast<unsigned>(std::ceil(needed)));
   answer.more = {static_cast<int>(rounded), most->error.value};
@@ -119,20 +119,20 @@ Answer answer_budget(double seconds, int max_spp, const std::vector<ProbedWork>&
 }
 
 Answer answer(const Wish& wish, const Recipe& recipe, const std::vector<ProbedWork>& work) {
-  const auto foretold = [&](std::string sentence, const Samples& samples) {
+  const auto answered = [&](std::string sentence, const Samples& samples) {
     Answer answer{std::move(sentence)};
     answer.forecast = forecast(work, samples);
     return answer;
   };
   if (!recipe.outputs.image)
-    return foretold("no samples, as outputs.image = false", {std::nullopt, 0});
+    return answered("no samples, as outputs.image = false", {std::nullopt, 0});
   const int max_spp = max_spp_of(recipe);
   if (wish.budget_seconds) return answer_budget(*wish.budget_seconds, max_spp, work);
   if (!wish.error && !recipe.engine.target)
-    return foretold(fmt::format("{} samples a pixel", recipe.engine.spp),
+    return answered(fmt::format("{} samples a pixel", recipe.engine.spp),
                     {std::nullopt, recipe.engine.spp});
   const double error = wish.error ? *wish.error : recipe.engine.target->error;
-  return foretold(fmt::format("every picture to an engine.error of {}, with at most {} "
+  return answered(fmt::format("every picture to an engine.error of {}, with at most {} "
                               "samples a pixel (engine.max_spp)",
                               percent(error), max_spp),
                   {error, 0, double(max_spp)});

@@ -12,7 +12,7 @@ const std::vector<Verb>& verbs() {
         rehash, adopt, copy, explain, verbose, strict, json},
        run_build},
       {"plan",
-       "list the images a build would make, and why; or foretell its time and disk",
+       "list the images a build would make, and why; or forecast its time and disk",
        {target, overrides, output_folder, store_folder, shard, rehash, adopt, forecast, device,
         verbose, json},
        run_plan},

@@ -38,7 +38,7 @@ struct Samples {
   double most_spp = k_most_spp;  ///< engine.max_spp
 };
 
-/// What is foretold of one pair.
+/// What is forecast of one pair.
 struct PairForecast {
   std::string environment, material;
   std::uint64_t images = 0, made = 0;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compares what `dsbuild plan --time` and `--error` foretell of a recipe with what building it then takes.
+"""Compares what `dsbuild plan --time` and `--error` forecast of a recipe with what building it then takes.
 
 Calibration and build run one after the other, so that they meet the same load, several times over; what counts is the
 median of the ratios, of each question. No test of the suite: a machine that others use makes any single time wrong.
@@ -31,7 +31,7 @@ class Comparison:
         self.settings = ["--set", f"engine.width={options.size}", "--set", f"engine.height={options.size}"]
 
     def row(self, name, question, build_settings):
-        """Prints a line; the seconds foretold over those taken."""
+        """Prints a line; the seconds forecast over those taken."""
         with tempfile.TemporaryDirectory(prefix="dsbuild-forecast-") as scratch:
             folder = pathlib.Path(scratch) / "out"
             common = [self.recipe, *self.settings, "-o", folder, "--json"]
@@ -41,7 +41,7 @@ class Comparison:
         seconds, took = told["seconds"], built["seconds"]
         samples = sum(pair["made"] * pair["traced_spp"] for pair in told["pairs"]) * self.size * self.size
         inside = seconds["low"] <= took <= seconds["high"]
-        print(f"{name}: foretold {seconds['value']:.1f} s ({seconds['low']:.1f} to {seconds['high']:.1f}), "
+        print(f"{name}: forecast {seconds['value']:.1f} s ({seconds['low']:.1f} to {seconds['high']:.1f}), "
               f"took {took:.1f} s: {seconds['value'] / took:.2f}, {'inside' if inside else 'outside'}; "
               f"disk {told['bytes']['value'] / 1e6:.1f} MB, took {size / 1e6:.1f} MB: "
               f"{told['bytes']['value'] / size:.2f}; samples {samples / 1e6:.1f} M, "

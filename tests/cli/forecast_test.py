@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What plan foretells; that it is right is measured by ci/forecast, since a shared machine makes any one time wrong."""
+"""What plan forecasts; that it is right is measured by ci/forecast, since a shared machine makes any one time wrong."""
 import os
 import pathlib
 import shutil

@@ -226,7 +226,7 @@ std::vector<Spoiler> camera_spoilers() {
   };
 }
 
-TEST(Numbers, OneThatIsNoneAnywhereInASceneIsAnErrorThatSaysWhere) {
+TEST(Numbers, OneOutOfItsRangeAnywhereInASceneIsAnErrorThatSaysWhere) {
   EXPECT_EQ(error_of(lit_sphere()), "no error");
   for (const std::vector<Spoiler>& spoilers :
        {mesh_spoilers(), material_spoilers(), texture_spoilers(), light_spoilers(),

@@ -104,8 +104,8 @@ Picture ball_in_the_sun(std::uint32_t id, std::string_view material = "glossy2")
   Picture p{std::string(material), {}, {}, {}};
   const int ground = pictures::add_matte(p.scene, {0.5f, 0.5f, 0.5f});
   pictures::add_object(p.scene, pictures::quad({0, 0, 0}, {3, 0, 0}, {0, 3, 0}), ground);
-  const int shiny = pictures::add_material(p.scene, material);
-  pictures::add_object(p.scene, pictures::sphere({0, 0, 0.5f}, 0.5f, 16, true), shiny, id);
+  const int caster = pictures::add_material(p.scene, material);
+  pictures::add_object(p.scene, pictures::sphere({0, 0, 0.5f}, 0.5f, 16, true), caster, id);
   p.scene.lights.push_back(pictures::sun_light({0.8f, 0, 0.6f}, 0.5, {1000, 1000, 1000}));
   p.camera.position = {0.5, -2.5, 2};
   p.camera.target = {0.3, 0, 0.2};
@@ -114,7 +114,7 @@ Picture ball_in_the_sun(std::uint32_t id, std::string_view material = "glossy2")
   return p;
 }
 
-TEST(Guide, IsForShinyModelsAmongDullThingsOnly) {
+TEST(Guide, IsForModelsThatCastCausticsAmongReceiversOnly) {
   const auto guided = [](const Scene& scene) { return features_of(scene, Camera{}).guide; };
   EXPECT_TRUE(guided(ball_in_the_sun(k_model_object_id).scene));
   EXPECT_FALSE(guided(ball_in_the_sun(7).scene));

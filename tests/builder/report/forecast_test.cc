@@ -336,7 +336,7 @@ TEST_F(CalibrationTest, WithoutAPictureThereAreNoSamples) {
   EXPECT_TRUE(calls.traced.empty());
 }
 
-TEST_F(CalibrationTest, KeptSumsAreForetold) {
+TEST_F(CalibrationTest, KeptSumsAreForecast) {
   const std::vector<std::string> keep{"engine.keep_film=true", "engine.spp=1024"};
   EXPECT_GT(calibrated({}).measured, 0U);
   const Calibration c = calibrated(keep);
