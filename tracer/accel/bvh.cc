@@ -116,10 +116,11 @@ class Flattener {
   Flattener(std::span<const BinaryNode> tree, std::span<const Corners> triangles, std::size_t width)
       : tree_(tree), triangles_(triangles), collapse_(tree, width) {}
 
-  Bvh run() {
+  WideTree run() {
     const auto root = static_cast<std::uint32_t>(tree_.size() - 1);
-    if (tree_[root].leaf_count == 1) {
-      // The kernels start at a node, so a scene of one triangle gets one above it.
+    levels_ = 1;
+    if (collapse_.is_leaf(root)) {
+      // The kernels start at a node, so a scene of a few triangles gets one above its leaf.
       const std::size_t at = append_node();
       set_child(at, 0, tree_[root].bounds, write_leaf(root));
     } else {
@@ -129,7 +130,7 @@ class Flattener {
     std::copy(bounds.low.begin(), bounds.low.end(), bvh_.nodes.begin() + k_root_bounds * k_width);
     std::copy(bounds.high.begin(), bounds.high.end(),
               bvh_.nodes.begin() + k_root_bounds * k_width + 3);
-    return std::move(bvh_);
+    return {std::move(bvh_), levels_};
   }
 
  private:
@@ -139,6 +140,7 @@ class Flattener {
   std::uint32_t write_node(std::uint32_t node, unsigned depth) {
     if (depth > k_bvh_depth)
       fail(ErrorKind::device, "the scene's tree has more than {} levels", unsigned{k_bvh_depth});
+    levels_ = std::max(levels_, depth);
     const std::size_t at = append_node();
     const std::vector<std::uint32_t> children = collapse_.children(node);
     for (std::size_t i = 0; i < children.size(); ++i) {
@@ -203,11 +205,16 @@ class Flattener {
   std::span<const Corners> triangles_;
   Collapse collapse_;
   Bvh bvh_;
+  unsigned levels_ = 0;
 };
 
 }  // namespace
 
 Bvh build_bvh(std::span<const Corners> triangles, BvhQuality quality, int width) {
+  return build_wide_tree(triangles, quality, width).bvh;
+}
+
+WideTree build_wide_tree(std::span<const Corners> triangles, BvhQuality quality, int width) {
   DS_ASSERT(width >= k_least_bvh_width && width <= k_most_bvh_width);
   const std::vector<BinaryNode> tree = build_binary_tree(triangles, quality);
   return Flattener(tree, triangles, static_cast<std::size_t>(width)).run();
@@ -215,18 +222,13 @@ Bvh build_bvh(std::span<const Corners> triangles, BvhQuality quality, int width)
 
 Bvh build_joined_bvh(std::span<const Corners> triangles, std::size_t first_count,
                      BvhQuality quality, int width, TreeCache& cache) {
-  DS_ASSERT(width >= k_least_bvh_width && width <= k_most_bvh_width);
   DS_ASSERT(first_count <= triangles.size());
-  const auto wide = static_cast<std::size_t>(width);
-  if (first_count == 0 || first_count == triangles.size()) {
-    const auto whole = cache.get(triangles, quality);
-    return Flattener(*whole, triangles, wide).run();
-  }
-  const auto first = cache.get(triangles.first(first_count), quality);
-  const auto second = cache.get(triangles.subspan(first_count), quality);
-  const std::vector<BinaryNode> tree =
-      join_trees(*first, *second, static_cast<std::uint32_t>(first_count));
-  return Flattener(tree, triangles, wide).run();
+  if (first_count == 0 || first_count == triangles.size())
+    return cache.get(triangles, quality, width)->bvh;
+  const auto first = cache.get(triangles.first(first_count), quality, width);
+  const auto second = cache.get(triangles.subspan(first_count), quality, width);
+  auto joined = join_trees(*first, *second, static_cast<std::uint32_t>(first_count), width);
+  return joined ? std::move(joined->bvh) : build_bvh(triangles, quality, width);
 }
 
 }  // namespace ds

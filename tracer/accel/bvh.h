@@ -16,6 +16,12 @@ struct Bvh {
   std::vector<float> leaves;  ///< k_leaf_vectors * 8 words a leaf
 };
 
+/// A tree, and how many levels of nodes it has.
+struct WideTree {
+  Bvh bvh;
+  unsigned levels = 0;
+};
+
 enum class BvhQuality { low, medium, high };
 
 inline constexpr int k_least_bvh_width = 2, k_most_bvh_width = 8;
@@ -28,6 +34,8 @@ inline constexpr int k_least_bvh_width = 2, k_most_bvh_width = 8;
 /// allows (k_bvh_depth of kernels/scene_data.h), which a narrow one is sooner.
 Bvh build_bvh(std::span<const std::array<Vec3, 3>> triangles,
               BvhQuality quality = BvhQuality::medium, int width = k_most_bvh_width);
+WideTree build_wide_tree(std::span<const std::array<Vec3, 3>> triangles, BvhQuality quality,
+                         int width);
 
 class TreeCache;
 

@@ -11,11 +11,8 @@
 #include <memory>
 #include <mutex>
 #include <span>
-#include <vector>
 
 namespace ds {
-
-struct BinaryNode;
 
 /// Trees that were built before, by the triangles they are of: an environment's is the same for
 /// each model in it, and a model's in each environment. Safe from several threads.
@@ -23,18 +20,18 @@ class TreeCache {
  public:
   explicit TreeCache(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
-  /// As build_binary_tree.
-  std::shared_ptr<const std::vector<BinaryNode>> get(std::span<const std::array<Vec3, 3>> triangles,
-                                                     BvhQuality quality);
+  /// As build_wide_tree.
+  std::shared_ptr<const WideTree> get(std::span<const std::array<Vec3, 3>> triangles,
+                                      BvhQuality quality, int width = k_most_bvh_width);
   /// How many were built.
   std::uint64_t built() const;
 
  private:
-  using Tree = std::shared_ptr<const std::vector<BinaryNode>>;
   struct Known {
     Hash128 triangles;
     BvhQuality quality;
-    Tree tree;
+    int width;
+    std::shared_ptr<const WideTree> tree;
   };
 
   mutable std::mutex mutex_;

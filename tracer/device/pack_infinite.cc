@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -54,15 +55,6 @@ Cells cells_of(const Image& image) {
     }
   }
   return cells;
-}
-
-/// Where an image's texels stand in tables: all images come first, one behind the other
-/// (scene_pack.cc).
-std::uint32_t texel_offset(const Scene& scene, int image) {
-  std::size_t offset = 0;
-  for (int i = 0; i < image; ++i)
-    offset += scene.images[static_cast<std::size_t>(i)].rgb.size();
-  return static_cast<std::uint32_t>(offset);
 }
 
 /// The texel in one word (infinite_shared_exponent), where it fits exactly.
@@ -134,40 +126,30 @@ InfiniteTables tables_of(const Image& image) {
   return result;
 }
 
-}  // namespace
-
-std::shared_ptr<const InfiniteTables> PackCache::infinite(const Image& image) {
+Hash128 hash_of(const Image& image) {
   CanonicalText use;
   use.add("width", image.width);
   use.add("pixels", hash_bytes(std::as_bytes(std::span(image.rgb))).hex());
-  const Hash128 key = hash_text(use.text());
-  const auto found =
-      std::find_if(known_.begin(), known_.end(), [&](const auto& one) { return one.first == key; });
-  if (found != known_.end()) {
-    known_.splice(known_.begin(), known_, found);
-    return known_.front().second;
-  }
-  auto tables = std::make_shared<const InfiniteTables>(tables_of(image));
-  const auto bytes_of = [](const InfiniteTables& of) { return of.words.size() * sizeof(float); };
-  if (bytes_of(*tables) > most_bytes_) return tables;
-  known_.emplace_front(key, tables);
-  for (bytes_ += bytes_of(*tables); bytes_ > most_bytes_; known_.pop_back())
-    bytes_ -= bytes_of(*known_.back().second);
-  return tables;
+  return hash_text(use.text());
 }
+
+}  // namespace
 
 LightRow infinite_row(const Scene& scene, const Light& light, double scene_radius, PackCache* cache,
                       Words& tables) {
   const Image& image = scene.images[static_cast<std::size_t>(light.image)];
-  const auto known = cache != nullptr ? cache->infinite(image)
-                                      : std::make_shared<const InfiniteTables>(tables_of(image));
+  const auto make = [&] { return tables_of(image); };
+  const auto known = cache != nullptr ? cache->infinite.get(hash_of(image), make)
+                                      : std::make_shared<const InfiniteTables>(make());
   const std::uint32_t base = tables.offset();
   tables.add(std::span(known->words));
+  const std::uint32_t texels = known->has_texels ? base : tables.offset();
+  if (!known->has_texels) tables.add(std::span(image.rgb));
   LightRow result{"infinite", 0, {}};
   Words& p = result.parameters;
   p.add(static_cast<std::uint32_t>(image.width));
   p.add(static_cast<std::uint32_t>(image.height));
-  p.add(known->has_texels ? base : texel_offset(scene, light.image));
+  p.add(texels);
   p.add(known->has_texels ? std::uint32_t{1} : std::uint32_t{0});
   p.add(light.color);
   p.add(base + known->rows);

@@ -2,6 +2,7 @@
 #include "tracer/device/scene_pack.h"
 
 #include "tracer/base/error.h"
+#include "tracer/base/hash_stream.h"
 #include "tracer/device/pack_rows.h"
 #include "tracer/device/texture_code.h"
 #include "tracer/device/ties.h"
@@ -9,22 +10,27 @@
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <span>
 
 namespace ds {
 namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-std::vector<Corners> all_corners(const Scene& scene) {
+std::vector<Corners> corners_of(const Scene& scene) {
   std::vector<Corners> corners;
   for (const Object& object : scene.objects) {
     const Mesh& mesh = object.mesh;
     for (const auto& t : mesh.triangles)
       corners.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
   }
+  if (corners.empty()) fail(ErrorKind::asset, "the scene has no triangle");
   return corners;
 }
 
@@ -44,9 +50,11 @@ Vec3 corner_normal(const Mesh& mesh, std::uint32_t vertex, Vec3 own) {
   return dot(to_double(stored), to_double(own)) < 0 ? -stored : stored;
 }
 
-/// `tied`: Ties::flags from the object's first triangle on.
-void pack_object(const Object& object, std::uint32_t light, const std::uint32_t* tied, Words& out) {
+TriangleRows rows_of(const Object& object, std::uint32_t light) {
   const Mesh& mesh = object.mesh;
+  TriangleRows rows;
+  Words& out = rows.words;
+  out.reserve(mesh.triangles.size() * kernels::k_triangle_words);
   for (const auto& t : mesh.triangles) {
     const Corners corners = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
     for (const Vec3& p : corners)
@@ -61,29 +69,46 @@ void pack_object(const Object& object, std::uint32_t light, const std::uint32_t*
     out.add(static_cast<std::uint32_t>(object.material));
     out.add(light);
     out.add(object.id);
-    out.add(*tied++ |
-            (object.camera_invisible ? std::uint32_t{kernels::k_flag_camera_invisible} : 0u));
+    out.add(object.camera_invisible ? std::uint32_t{kernels::k_flag_camera_invisible} : 0u);
   }
+  return rows;
 }
 
-/// Offsets in tables of the images' texels; each image once. Infinite lights take theirs from here
-/// too.
+/// Of all that rows_of reads.
+Hash128 hash_of_rows(const Object& object, std::uint32_t light) {
+  const auto hash = [](const auto& values) { return hash_bytes(std::as_bytes(std::span(values))); };
+  HashStream stream;
+  stream.add(hash(object.mesh.positions));
+  stream.add(hash(object.mesh.normals));
+  stream.add(hash(object.mesh.uvs));
+  stream.add(hash(object.mesh.triangles));
+  stream.add(fmt::format("{} {} {} {}", object.material, light, object.id,
+                         static_cast<int>(object.camera_invisible)));
+  return stream.hash();
+}
+
+/// Offsets in tables of the texels of images that textures show; each image once. Infinite lights
+/// have tables of their own.
 std::vector<std::uint32_t> pack_texels(const Scene& scene, Words& tables) {
+  std::vector<bool> shown(scene.images.size(), false);
+  for (const Texture& texture : scene.textures)
+    if (texture.image >= 0) shown[static_cast<std::size_t>(texture.image)] = true;
   std::vector<std::uint32_t> offsets;
   for (const Image& image : scene.images) {
     DS_ASSERT(image.width > 0 && image.rgb.size() == std::size_t{3} *
                                                          static_cast<std::size_t>(image.width) *
                                                          static_cast<std::size_t>(image.height));
+    const bool is_shown = shown[offsets.size()];
     offsets.push_back(tables.offset());
-    tables.add(std::span(image.rgb));
+    if (is_shown) tables.add(std::span(image.rgb));
   }
   return offsets;
 }
 
 /// The material's program with the scene's numbers put in; its offset, or k_none.
-std::uint32_t pack_program(const Scene& scene, const Material& material, const Features& features,
-                           const std::vector<std::uint32_t>& texels, std::uint32_t colors,
-                           Words& programs) {
+std::uint32_t pack_texture_code(const Scene& scene, const Material& material,
+                                const Features& features, const std::vector<std::uint32_t>& texels,
+                                std::uint32_t colors, Words& out) {
   TextureCode code = texture_code(scene, material);
   if (code.words.empty()) return k_none;
   for (const std::size_t i : code.op_words) {
@@ -95,9 +120,9 @@ std::uint32_t pack_program(const Scene& scene, const Material& material, const F
     code.words[i] = texels[code.words[i]];
   for (const std::size_t i : code.color_words)
     code.words[i] = colors;
-  const std::uint32_t offset = programs.offset();
+  const std::uint32_t offset = out.offset();
   for (const std::uint32_t word : code.words)
-    programs.add(word);
+    out.add(word);
   return offset;
 }
 
@@ -132,7 +157,7 @@ void pack_materials(const Scene& scene, const Features& features,
     out.add(number >= 0 ? static_cast<std::uint32_t>(number)
                         : static_cast<std::uint32_t>(features.materials.size()) +
                               static_cast<std::uint32_t>(std::max(chooser, 0)));
-    out.add(pack_program(scene, material, features, texels, colors, packed.programs));
+    out.add(pack_texture_code(scene, material, features, texels, colors, packed.texture_code));
     for (const int child : material.children)
       out.add(static_cast<std::uint32_t>(std::max(child, 0)));
     out.add(material.emission.constant);
@@ -140,6 +165,38 @@ void pack_materials(const Scene& scene, const Features& features,
     if (number >= 0 || chooser >= 0) pack_inputs(material, out);
     out.pad_to((i + 1) * row_words);
   }
+}
+
+Bvh tree_of(const Scene& scene, std::span<const Corners> corners, BvhQuality quality, int bvh_width,
+            PackCache* cache) {
+  // The model comes last (compose), and is all that scenes of one environment differ in.
+  if (cache == nullptr || scene.objects.back().id != k_model_object_id)
+    return build_bvh(corners, quality, bvh_width);
+  return build_joined_bvh(corners, first_triangles(scene).back(), quality, bvh_width, cache->trees);
+}
+
+/// `mesh_lights`: as pack_lights gives them. The tree must be there.
+void pack_triangles(const Scene& scene, std::span<const Corners> corners,
+                    const std::vector<std::uint32_t>& mesh_lights, PackCache* cache,
+                    PackedScene& packed) {
+  packed.triangles.reserve(corners.size() * kernels::k_triangle_words);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
+    const auto make = [&] { return rows_of(object, mesh_lights[i]); };
+    // The last is the model, which scenes do not have in common.
+    const bool shared = cache != nullptr && i + 1 < scene.objects.size();
+    packed.triangles.add((shared ? cache->rows.get(hash_of_rows(object, mesh_lights[i]), make)
+                                 : std::make_shared<const TriangleRows>(make()))
+                             ->words);
+  }
+  const Ties ties =
+      find_ties(scene, corners, packed.bvh, cache != nullptr ? &cache->ties : nullptr);
+  std::copy(ties.low.begin(), ties.low.end(), packed.data.tie_low);
+  std::copy(ties.high.begin(), ties.high.end(), packed.data.tie_high);
+  for (std::size_t i = 0; i < ties.flags.size(); ++i)
+    if (ties.flags[i] != 0)
+      packed.triangles.at(i * kernels::k_triangle_words + kernels::k_triangle_flags) |=
+          ties.flags[i];
 }
 
 }  // namespace
@@ -156,25 +213,24 @@ std::vector<std::uint32_t> first_triangles(const Scene& scene) {
 
 PackedScene pack_scene(const Scene& scene, const Features& features, BvhQuality quality,
                        int bvh_width, PackCache* cache) {
-  const std::vector<Corners> corners = all_corners(scene);
-  if (corners.empty()) fail(ErrorKind::asset, "the scene has no triangle");
+  const std::vector<Corners> corners = corners_of(scene);
   PackedScene packed;
-  const std::vector<std::uint32_t> first = first_triangles(scene);
-  // The model comes last (compose), and is all that scenes of one environment differ in.
-  const bool has_model = scene.objects.back().id == k_model_object_id;
-  packed.bvh = cache != nullptr && has_model
-                   ? build_joined_bvh(corners, first.back(), quality, bvh_width, cache->trees)
-                   : build_bvh(corners, quality, bvh_width);
   const std::vector<std::uint32_t> texels = pack_texels(scene, packed.tables);
   const std::uint32_t colors = pack_colors(scene, features, packed.tables);
   pack_materials(scene, features, texels, colors, packed);
   std::vector<std::uint32_t> mesh_lights;
   pack_lights(scene, features, cache, packed, mesh_lights);
-  const Ties ties = find_ties(scene, corners, packed.bvh);
-  std::copy(ties.low.begin(), ties.low.end(), packed.data.tie_low);
-  std::copy(ties.high.begin(), ties.high.end(), packed.data.tie_high);
-  for (std::size_t i = 0; i < scene.objects.size(); ++i)
-    pack_object(scene.objects[i], mesh_lights[i], ties.flags.data() + first[i], packed.triangles);
+  packed.bvh = tree_of(scene, corners, quality, bvh_width, cache);
+  pack_triangles(scene, corners, mesh_lights, cache, packed);
+  return packed;
+}
+
+PackedScene pack_surfaces(const Scene& scene, BvhQuality quality, int bvh_width, PackCache* cache) {
+  const std::vector<Corners> corners = corners_of(scene);
+  PackedScene packed;
+  packed.bvh = tree_of(scene, corners, quality, bvh_width, cache);
+  pack_triangles(scene, corners, std::vector<std::uint32_t>(scene.objects.size(), k_none), cache,
+                 packed);
   return packed;
 }
 

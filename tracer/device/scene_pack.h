@@ -3,17 +3,16 @@
 
 #include "tracer/accel/bvh.h"
 #include "tracer/accel/tree_cache.h"
+#include "tracer/base/kept.h"
 #include "tracer/device/program_text.h"
+#include "tracer/device/ties.h"
 #include "tracer/kernels/layout.h"
 #include "tracer/scene/scene.h"
 
 #include <bit>
 #include <cstdint>
 #include <cstring>
-#include <list>
-#include <memory>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace ds {
@@ -31,6 +30,7 @@ class Words {
     words_.resize(before + values.size());
     if (!values.empty()) std::memcpy(words_.data() + before, values.data(), values.size_bytes());
   }
+  void add(const Words& words) { add(std::span(words.words_)); }
   void add(Vec3 v) {
     add(v.x);
     add(v.y);
@@ -39,6 +39,8 @@ class Words {
   /// Offset of what is added next.
   std::uint32_t offset() const { return static_cast<std::uint32_t>(words_.size()); }
   void pad_to(std::size_t size) { words_.resize(size, 0); }
+  void reserve(std::size_t size) { words_.reserve(size); }
+  std::uint32_t& at(std::size_t place) { return words_.at(place); }
   const std::vector<std::uint32_t>& words() const { return words_; }
 
  private:
@@ -48,7 +50,7 @@ class Words {
 /// A scene as the kernels read it (kernels/scene_data.h).
 struct PackedScene {
   Bvh bvh;
-  Words triangles, materials, programs, lights, tables;
+  Words triangles, materials, texture_code, lights, tables;
   kernels::SceneData data{};
 };
 
@@ -60,18 +62,29 @@ struct InfiniteTables {
   double weight = 0;  ///< luminance over all directions
 };
 
+inline std::size_t bytes_held(const InfiniteTables& of) {
+  return of.words.size() * sizeof(of.words[0]) + sizeof of;
+}
+
+/// An object's rows of `triangles`, without what ties mark them with.
+struct TriangleRows {
+  Words words;
+};
+inline std::size_t bytes_held(const TriangleRows& of) {
+  return of.words.words().size() * sizeof(std::uint32_t) + sizeof of;
+}
+
 /// What packing made for scenes before, and what it depends on is the same: thousands of models
-/// stand in one environment. Changes no word.
-class PackCache {
- public:
-  explicit PackCache(std::size_t most_bytes) : trees(most_bytes), most_bytes_(most_bytes) {}
-  std::shared_ptr<const InfiniteTables> infinite(const Image& image);
+/// stand in one environment. Changes no word. Used by one thread at a time.
+struct PackCache {
+  /// `most_bytes` of each kind.
+  explicit PackCache(std::size_t most_bytes)
+      : trees(most_bytes), ties(most_bytes), rows(most_bytes), infinite(most_bytes) {}
 
   TreeCache trees;
-
- private:
-  std::size_t most_bytes_, bytes_ = 0;
-  std::list<std::pair<Hash128, std::shared_ptr<const InfiniteTables>>> known_;  ///< last used first
+  Kept<TiePairs> ties;
+  Kept<TriangleRows> rows;
+  Kept<InfiniteTables> infinite;
 };
 
 /// Images must be loaded. `features` gives the numbers of materials, textures and lights: the
@@ -79,6 +92,11 @@ class PackCache {
 /// the tracer cannot hold. `bvh_width`: build_bvh's.
 PackedScene pack_scene(const Scene& scene, const Features& features, BvhQuality quality,
                        int bvh_width = k_most_bvh_width, PackCache* cache = nullptr);
+
+/// What planes read of a scene (first_hit.cl): tree and triangles. Loads no image and numbers
+/// nothing: no triangle is part of a light.
+PackedScene pack_surfaces(const Scene& scene, BvhQuality quality, int bvh_width = k_most_bvh_width,
+                          PackCache* cache = nullptr);
 
 /// A triangle's row number where objects stand one behind the other: index of the object's first
 /// triangle.

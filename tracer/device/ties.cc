@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/device/ties.h"
 
+#include "tracer/base/hash_stream.h"
 #include "tracer/device/program_text.h"
 #include "tracer/kernels/all_nodes.h"
 #include "tracer/scene/sdl.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -171,51 +176,129 @@ Box3 grown(const Box3& box, double by) {
   return {box.low - margin, box.high + margin};
 }
 
-class TieFinder {
+bool meet(const Box3& a, const Box3& b) {
+  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&
+         a.low.z <= b.high.z && b.low.z <= a.high.z;
+}
+
+class PairFinder {
  public:
-  TieFinder(const Scene& scene, std::span<const Corners> triangles, const Bvh& bvh)
-      : triangles_(triangles), bvh_(bvh), rank_(ranks(scene)) {
-    ties_.flags.assign(triangles.size(), 0);
-    error_.assign(triangles.size(), 0);
-    faces_.reserve(triangles.size());
+  PairFinder(const Scene& scene, std::span<const Corners> triangles, const Bvh& bvh)
+      : scene_(scene), triangles_(triangles), bvh_(bvh), first_(scene.objects.size() + 1, 0) {
+    for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+      const std::size_t count = scene.objects[o].mesh.triangles.size();
+      owner_.insert(owner_.end(), count, o);
+      first_[o + 1] = first_[o] + static_cast<std::uint32_t>(count);
+    }
     for (const Corners& c : triangles)
-      faces_.push_back(face_of(c));
-    for (std::uint32_t o = 0; o < scene.objects.size(); ++o)
-      owner_.insert(owner_.end(), scene.objects[o].mesh.triangles.size(), o);
+      worst_ = std::max(worst_, error_of(c));
   }
 
-  /// A pair is found from either side, so the object of most triangles need not look.
-  Ties find(const Scene& scene) {
-    const auto most = std::max_element(scene.objects.begin(), scene.objects.end(),
-                                       [](const Object& a, const Object& b) {
-                                         return a.mesh.triangles.size() < b.mesh.triangles.size();
-                                       });
-    const auto skipped = static_cast<std::uint32_t>(most - scene.objects.begin());
-    double worst = 0;
-    for (const Face& face : faces_)
-      worst = std::max(worst, face.error);
-    for (std::uint32_t id = 0; id < faces_.size(); ++id)
-      if (owner_[id] != skipped)
-        visit_triangles(bvh_, grown(faces_[id].box, worst),
-                        [&](std::uint32_t other) { judge(id, other); });
-    finish();
-    return std::move(ties_);
+  /// Among the first `count` objects. A pair is found from either side, so the one of most triangles
+  /// need not look.
+  TiePairs among(std::uint32_t count) const {
+    TiePairs found;
+    std::uint32_t most = 0;
+    for (std::uint32_t o = 1; o < count; ++o)
+      if (size_of(o) > size_of(most)) most = o;
+    for (std::uint32_t o = 0; o < count; ++o)
+      if (o != most)
+        look(
+            o, [&](std::uint32_t other) { return other < count && (other == most || other < o); },
+            found);
+    return found;
   }
+  /// Between the last object and those before it.
+  void add_of_last(TiePairs& found) const {
+    const auto last = static_cast<std::uint32_t>(scene_.objects.size() - 1);
+    if (size_of(last) <= first_[last]) {
+      look(
+          last, [&](std::uint32_t other) { return other != last; }, found);
+      return;
+    }
+    for (std::uint32_t o = 0; o < last; ++o)
+      look(
+          o, [&](std::uint32_t other) { return other == last; }, found);
+  }
+  std::uint32_t first_of_last() const { return first_[scene_.objects.size() - 1]; }
+  std::uint32_t owner(std::uint32_t triangle) const { return owner_[triangle]; }
 
  private:
-  void judge(std::uint32_t a, std::uint32_t b) {
-    const std::uint32_t rank_a = rank_[owner_[a]], rank_b = rank_[owner_[b]];
-    if (rank_a == rank_b || !tie(faces_[a], faces_[b])) return;
+  static double error_of(const Corners& c) {
+    const auto real3_of = [](Vec3 v) { return kernels::vec(v.x, v.y, v.z); };
+    return double{
+        kernels::position_error(real3_of(c[0]), real3_of(c[1] - c[0]), real3_of(c[2] - c[0]))};
+  }
+  std::uint32_t size_of(std::uint32_t object) const { return first_[object + 1] - first_[object]; }
+
+  /// From each of the object's triangles at those of the objects that `wanted` names.
+  template <typename Wanted>
+  void look(std::uint32_t object, const Wanted& wanted, TiePairs& found) const {
+    std::vector<std::uint32_t> near;
+    for (std::uint32_t id = first_[object]; id < first_[object + 1]; ++id) {
+      const Face face = face_of(triangles_[id]);
+      near.clear();
+      visit_triangles(bvh_, grown(face.box, face.error + worst_), [&](std::uint32_t other) {
+        if (owner_[other] != object && wanted(owner_[other])) near.push_back(other);
+      });
+      // A tree may name one more than once.
+      std::sort(near.begin(), near.end());
+      near.erase(std::unique(near.begin(), near.end()), near.end());
+      for (const std::uint32_t other : near) {
+        const Face against = face_of(triangles_[other]);
+        // Which are looked at depends on the tree, and which tie must not.
+        if (meet(grown(face.box, face.error + against.error), against.box) && tie(face, against))
+          found.pairs.push_back({id, other});
+      }
+    }
+  }
+
+  const Scene& scene_;
+  std::span<const Corners> triangles_;
+  const Bvh& bvh_;
+  std::vector<std::uint32_t> first_;  ///< triangle of each object, and the end
+  std::vector<std::uint32_t> owner_;
+  double worst_ = 0;
+};
+
+TiePairs find_pairs(const Scene& scene, std::span<const Corners> triangles,
+                    const PairFinder& finder, Kept<TiePairs>* cache) {
+  const auto objects = static_cast<std::uint32_t>(scene.objects.size());
+  if (cache == nullptr) return finder.among(objects);
+  HashStream key;
+  key.add(hash_bytes(std::as_bytes(triangles.first(finder.first_of_last()))));
+  for (const Object& object : scene.objects)
+    key.add(&object == &scene.objects.back() ? "."
+                                             : fmt::format("{} ", object.mesh.triangles.size()));
+  TiePairs pairs = *cache->get(key.hash(), [&] { return finder.among(objects - 1); });
+  finder.add_of_last(pairs);
+  return pairs;
+}
+
+/// What triangles are marked with, pair by pair.
+class Marks {
+ public:
+  Marks(const Scene& scene, std::span<const Corners> triangles)
+      : triangles_(triangles), rank_(ranks(scene)) {
+    ties_.flags.assign(triangles.size(), 0);
+  }
+
+  void add(std::uint32_t a, std::uint32_t b, std::uint32_t owner_a, std::uint32_t owner_b) {
+    const std::uint32_t rank_a = rank_[owner_a], rank_b = rank_[owner_b];
+    if (rank_a == rank_b) return;
+    const Face face_a = face_of(triangles_[a]), face_b = face_of(triangles_[b]);
     ties_.flags[a] |= rank_a < rank_b ? kernels::k_flag_covers : kernels::k_flag_covered;
     ties_.flags[b] |= rank_b < rank_a ? kernels::k_flag_covers : kernels::k_flag_covered;
-    const double error = std::max(faces_[a].error, faces_[b].error);
+    const double error = std::max(face_a.error, face_b.error);
     const bool rounded = !same_axis_plane(triangles_[a], triangles_[b]);
-    for (const std::uint32_t id : {a, b}) {
-      error_[id] = std::max(error_[id], error);
+    for (const auto& [id, rank] : {std::pair(a, rank_a), std::pair(b, rank_b)}) {
+      Mark& mark = marks_[id];
+      mark.error = std::max(mark.error, error);
+      mark.rank = rank;
       if (rounded) ties_.flags[id] |= kernels::k_flag_tie_rounded;
     }
     // Where both are; of hits' places along rays that graze, more than rounding is uncertain.
-    const Box3 p = grown(faces_[a].box, error), q = grown(faces_[b].box, error);
+    const Box3 p = grown(face_a.box, error), q = grown(face_b.box, error);
     const Box3 both = {
         {std::max(p.low.x, q.low.x), std::max(p.low.y, q.low.y), std::max(p.low.z, q.low.z)},
         {std::min(p.high.x, q.high.x), std::min(p.high.y, q.high.y), std::min(p.high.z, q.high.z)}};
@@ -226,34 +309,42 @@ class TieFinder {
              std::max(high_.z, place.high.z)};
   }
 
-  void finish() {
-    for (std::uint32_t id = 0; id < ties_.flags.size(); ++id) {
-      if (ties_.flags[id] == 0) continue;
+  Ties take() {
+    for (const auto& [id, mark] : marks_) {
       // The next power of two.
       const std::uint32_t exponent =
-          (std::bit_cast<std::uint32_t>(static_cast<float>(error_[id])) >> 23) + 1;
+          (std::bit_cast<std::uint32_t>(static_cast<float>(mark.error)) >> 23) + 1;
       ties_.flags[id] |= std::min(exponent, 254u) << kernels::k_tie_error_shift;
-      ties_.flags[id] |= rank_[owner_[id]] << kernels::k_tie_rank_shift;
+      ties_.flags[id] |= mark.rank << kernels::k_tie_rank_shift;
     }
     for (int axis = 0; axis < 3; ++axis) {
       ties_.low[static_cast<std::size_t>(axis)] = static_cast<float>(low_[axis]);
       ties_.high[static_cast<std::size_t>(axis)] = static_cast<float>(high_[axis]);
     }
+    return std::move(ties_);
   }
 
+ private:
+  struct Mark {
+    double error = 0;
+    std::uint32_t rank = 0;
+  };
   std::span<const Corners> triangles_;
-  const Bvh& bvh_;
-  std::vector<std::uint32_t> rank_, owner_;
-  std::vector<Face> faces_;
-  std::vector<double> error_;
+  std::vector<std::uint32_t> rank_;
+  std::map<std::uint32_t, Mark> marks_;  ///< by triangle
   Vec3d low_{1e30, 1e30, 1e30}, high_{-1e30, -1e30, -1e30};
   Ties ties_;
 };
 
 }  // namespace
 
-Ties find_ties(const Scene& scene, std::span<const Corners> triangles, const Bvh& bvh) {
-  return TieFinder(scene, triangles, bvh).find(scene);
+Ties find_ties(const Scene& scene, std::span<const Corners> triangles, const Bvh& bvh,
+               Kept<TiePairs>* cache) {
+  const PairFinder finder(scene, triangles, bvh);
+  Marks marks(scene, triangles);
+  for (const auto& [a, b] : find_pairs(scene, triangles, finder, cache).pairs)
+    marks.add(a, b, finder.owner(a), finder.owner(b));
+  return marks.take();
 }
 
 }  // namespace ds

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "tracer/accel/bvh.h"
+#include "tracer/base/kept.h"
 #include "tracer/scene/scene.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,10 +22,21 @@ struct Ties {
   std::array<float, 3> low, high;
 };
 
-/// `triangles`: those of the scene's objects, one behind the other; `bvh`: their tree.
+/// Triangles of different objects that tie, whatever lies on what.
+struct TiePairs {
+  std::vector<std::array<std::uint32_t, 2>> pairs;
+};
+inline std::size_t bytes_held(const TiePairs& of) {
+  return of.pairs.size() * sizeof(of.pairs[0]) + sizeof of;
+}
+
+/// `triangles`: those of the scene's objects, one behind the other; `bvh`: their tree. `cache`, where
+/// there is one, knows the pairs among all objects but the last: scenes of one environment have them
+/// in common.
 ///
 /// Ranks: models lie on top, then what shines, then the object of lesser area (a carpet lies on the
 /// floor, not under it), then the earlier one.
-Ties find_ties(const Scene& scene, std::span<const std::array<Vec3, 3>> triangles, const Bvh& bvh);
+Ties find_ties(const Scene& scene, std::span<const std::array<Vec3, 3>> triangles, const Bvh& bvh,
+               Kept<TiePairs>* cache = nullptr);
 
 }  // namespace ds

@@ -14,7 +14,7 @@ void DeviceScene::take(const Device& device, const PackedScene& packed, UploadCo
        {&leaves, bytes(packed.bvh.leaves)},
        {&triangles, bytes(packed.triangles.words())},
        {&materials, bytes(packed.materials.words())},
-       {&programs, bytes(packed.programs.words())},
+       {&texture_code, bytes(packed.texture_code.words())},
        {&lights, bytes(packed.lights.words())},
        {&tables, bytes(packed.tables.words())},
        {&data, std::as_bytes(std::span(&packed.data, 1))}}};

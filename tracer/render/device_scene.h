@@ -12,7 +12,7 @@ namespace ds {
 
 /// A scene's tables in device memory.
 struct DeviceScene {
-  Buffer nodes, leaves, triangles, materials, programs, lights, tables, data;
+  Buffer nodes, leaves, triangles, materials, texture_code, lights, tables, data;
   std::array<Hash128, 8> words{};  ///< hashes of what they hold, in this order
 
   /// Uploads the tables that hold other words than these.

@@ -80,7 +80,7 @@ std::vector<Plane> Tracer::State::launch_planes(const DeviceScene& of, const Sce
   for (const Buffer* b : {&of.nodes, &of.leaves, &of.triangles, &ids, &view_buffer, &planes})
     kernel.set(argument++, *b);
   if (read_materials(types))
-    for (const Buffer* b : {&of.materials, &of.programs, &of.tables, &of.data})
+    for (const Buffer* b : {&of.materials, &of.texture_code, &of.tables, &of.data})
       kernel.set(argument++, *b);
   const auto pixels_an_item = static_cast<std::size_t>(plane_lanes());
   device.run(kernel, 0, round_up((pixels + pixels_an_item - 1) / pixels_an_item, local_size),

@@ -26,7 +26,7 @@ class Tracer::Picture {
     const DeviceScene& t = s_.device_scene;
     unsigned argument = 0;
     const Buffer &v = view_, &guide = s_.guide;
-    for (const Buffer* b : {&t.nodes, &t.leaves, &t.triangles, &t.materials, &t.programs, &t.lights,
+    for (const Buffer* b : {&t.nodes, &t.leaves, &t.triangles, &t.materials, &t.texture_code, &t.lights,
                             &t.tables, &t.data, &guide, &v})
       s_.path_kernel.set(argument++, *b);
     launch_argument_ = argument;

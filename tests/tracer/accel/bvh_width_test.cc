@@ -3,6 +3,7 @@
 // that the deepest is walked. What rays meet in the others: bvh_test.cc.
 #include "tests/render/pictures.h"
 #include "tests/tracer/accel/rays.h"
+#include "tracer/accel/tree_cache.h"
 #include "tracer/base/error.h"
 #include "tracer/kernels/layout.h"
 #include "tracer/scene/mesh.h"
@@ -13,6 +14,7 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -91,6 +93,26 @@ TEST_P(BvhWidth, LeavesAMillionTrianglesWithinTheKernelsDepth) {
                                          BvhQuality::medium, GetParam()));
   EXPECT_GE(shape.triangles.size(), 1000000u);
   EXPECT_LE(shape.levels, std::size_t{k_bvh_depth});
+}
+
+/// A model in an empty room and in one that is as full as the model; a room in a model.
+TEST_P(BvhWidth, HoldsWhereTreesAreJoined) {
+  const std::vector<Corners> model = teapot();
+  const std::vector<Corners> ball = corners_of(pictures::sphere({0, 0, 0}, 3, 24, false));
+  const std::vector<Corners> box = corners_of(pictures::box({0, 0, 0}, {1, 1, 1}));
+  TreeCache cache(std::size_t{1} << 28U);
+  for (const auto& [first, second] :
+       {std::pair(box, model), std::pair(ball, model), std::pair(model, box)}) {
+    std::vector<Corners> both = first;
+    both.insert(both.end(), second.begin(), second.end());
+    std::vector<std::uint32_t> all(both.size());
+    std::iota(all.begin(), all.end(), 0u);
+    const Shape shape =
+        shape_of(build_joined_bvh(both, first.size(), BvhQuality::medium, GetParam(), cache));
+    EXPECT_EQ(shape.triangles, all);
+    EXPECT_LE(shape.most_children, static_cast<std::size_t>(GetParam()));
+    EXPECT_LE(shape.levels, std::size_t{k_bvh_depth});
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Widths, BvhWidth, testing::Values(2, 3, 4, 8));

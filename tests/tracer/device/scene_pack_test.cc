@@ -4,9 +4,11 @@
 
 #include "tests/render/pictures.h"
 #include "tracer/base/error.h"
+#include "tracer/scene/sdl.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -59,6 +61,54 @@ TEST(PackScene, AMeshLightsTrianglesKnowTheirLight) {
   // Its area is among its parameters.
   EXPECT_EQ(number(packed.lights, light * kernels::k_light_words + kernels::k_light_parameters + 3),
             4);
+}
+
+/// Lamps and carpets under a sky, and a model of this size that stands on them.
+Scene room_with(float half) {
+  Scene scene = lit({pictures::image_light(0)});
+  scene.images = {pictures::small_sky()};
+  const int lamp = pictures::add_matte(scene, {0, 0, 0});
+  scene.materials.back().emits = true;
+  scene.materials.back().emission.constant = {1, 1, 1};
+  pictures::add_object(scene, pictures::quad({0, 0, 2}, {1, 0, 0}, {0, 1, 0}), lamp);
+  pictures::add_object(scene, pictures::quad({0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}), 0);
+  pictures::add_object(scene, pictures::box({0, 0, half}, {half, half, half}), 0,
+                       k_model_object_id);
+  return scene;
+}
+
+TEST(PackCache, ChangesNoWord) {
+  PackCache cache(std::size_t{1} << 20U);
+  for (const float half : {0.1f, 0.2f, 0.1f, 3.0f}) {
+    const Scene scene = room_with(half);
+    const Features features = features_of(scene, Camera{});
+    const PackedScene alone = pack_scene(scene, features, BvhQuality::medium);
+    const PackedScene cached =
+        pack_scene(scene, features, BvhQuality::medium, k_most_bvh_width, &cache);
+    EXPECT_EQ(cached.triangles.words(), alone.triangles.words()) << half;
+    EXPECT_EQ(cached.tables.words(), alone.tables.words()) << half;
+    EXPECT_EQ(cached.lights.words(), alone.lights.words()) << half;
+    EXPECT_TRUE(std::equal(alone.data.tie_low, alone.data.tie_low + 3, cached.data.tie_low));
+    EXPECT_TRUE(std::equal(alone.data.tie_high, alone.data.tie_high + 3, cached.data.tie_high));
+    // The carpet covers the floor, and the model both.
+    const auto flags = [&](std::size_t triangle) {
+      return cached.triangles
+          .words()[triangle * kernels::k_triangle_words + kernels::k_triangle_flags];
+    };
+    EXPECT_NE(flags(0) & kernels::k_flag_covered, 0u);
+    EXPECT_NE(flags(4) & kernels::k_flag_covers, 0u);
+    EXPECT_NE(flags(4) & kernels::k_flag_covered, 0u);
+  }
+}
+
+TEST(PackSurfaces, AreTheTrianglesWithoutTheirLights) {
+  const Scene scene = room_with(0.2f);
+  const PackedScene surfaces = pack_surfaces(scene, BvhQuality::medium);
+  std::vector<std::uint32_t> wanted = pack(scene).triangles.words();
+  for (std::size_t i = kernels::k_triangle_light; i < wanted.size(); i += kernels::k_triangle_words)
+    wanted[i] = k_none;
+  EXPECT_EQ(surfaces.triangles.words(), wanted);
+  EXPECT_TRUE(surfaces.tables.words().empty());
 }
 
 TEST(PackLights, OfAFewLightsEachIsACandidate) {

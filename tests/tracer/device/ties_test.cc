@@ -15,13 +15,13 @@ using kernels::k_flag_covers;
 using kernels::k_flag_tie_rounded;
 using kernels::k_tie_rank_shift;
 
-Ties ties_of(const Scene& scene) {
+Ties ties_of(const Scene& scene, int width = k_most_bvh_width) {
   std::vector<std::array<Vec3, 3>> corners;
   for (const Object& object : scene.objects)
     for (const auto& t : object.mesh.triangles)
       corners.push_back(
           {object.mesh.positions[t[0]], object.mesh.positions[t[1]], object.mesh.positions[t[2]]});
-  return find_ties(scene, corners, build_bvh(corners));
+  return find_ties(scene, corners, build_bvh(corners, BvhQuality::medium, width));
 }
 
 /// By object of two triangles each: the flags of the first, less rank and error.
@@ -61,6 +61,22 @@ TEST(Ties, AreNotOfNeighboursNorOfFacesThatRaysCanTellApart) {
     const Ties ties = ties_of(scene_of({level_square(0, 0.3f, 1), other}));
     EXPECT_EQ(kinds(ties), (std::vector<std::uint32_t>{0, 0}));
     EXPECT_GT(ties.low[0], ties.high[0]);
+  }
+}
+
+/// Each of them nearly fills its leaf's box, and both come near others' boxes.
+TEST(Ties, DoNotDependOnTheTree) {
+  std::vector<Mesh> meshes;
+  for (int i = 0; i < 12; ++i)
+    meshes.push_back(
+        level_square(0.3f * static_cast<float>(i), 0.3f + 1e-7f * static_cast<float>(i), 0.4f));
+  const Scene scene = scene_of(meshes);
+  const Ties usual = ties_of(scene);
+  for (const int width : {2, 3, 5}) {
+    const Ties other = ties_of(scene, width);
+    EXPECT_EQ(other.flags, usual.flags) << width;
+    EXPECT_EQ(other.low, usual.low) << width;
+    EXPECT_EQ(other.high, usual.high) << width;
   }
 }
 
