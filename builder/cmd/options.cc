@@ -218,8 +218,9 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
                  "forecast them for this relative error of every picture (0.02)");
       verb.add_option("--budget", to.budget, "say which error this time buys (8h, 90m)")
           ->type_name("TIME");
-      verb.add_flag("--recalibrate", to.recalibrate,
-                    "measure anew what forecasts are made from; else once for each program and device");
+      verb.add_flag(
+          "--recalibrate", to.recalibrate,
+          "measure anew what forecasts are made from; else once for each program and device");
       return;
     case Option::seed:
       add_number(verb, "--seed", to.seed, k_any_count, "chooses the images of --rerender [0]");

@@ -48,6 +48,11 @@ std::vector<const ImageSpec*> one_of_each_kind(const std::deque<const PlannedIma
   return first;
 }
 
+/// What images of one scene have in common.
+auto scene_of(const ImageSpec& spec) {
+  return std::tie(spec.model_file, spec.material_file, spec.environment_folder);
+}
+
 class Execution {
  public:
   Execution(Dataset& dataset, const Plan& plan, Inputs& inputs, const BuildOptions& options,
@@ -70,6 +75,7 @@ class Execution {
   void enter_dataset();
   Queue sort_images();
   void make_all(Queue queue);
+  void expect_next_scene(const Queue& queue, const PlannedImage& image);
   bool make_one(const PlannedImage& image);
   void take_kept();
   void catch_failure(const PlannedImage& image, const std::function<void()>& work);
@@ -102,6 +108,7 @@ class Execution {
   ImageMaker maker_;
   BuildResult result_;
   std::unordered_set<const PlannedImage*> made_;  ///< by this build
+  const PlannedImage* last_started_ = nullptr;    ///< the first of its scene
   /// Of images under way, until they are kept: another process would make them too.
   std::unordered_map<const PlannedImage*, Claims::Claim> claims_;
   std::map<std::string, std::vector<std::string>> failures_;  ///< image ids by what went wrong
@@ -156,12 +163,20 @@ Execution::Queue Execution::sort_images() {
     }
   }
   std::stable_sort(queue.begin(), queue.end(), [](const PlannedImage* a, const PlannedImage* b) {
-    const auto scene = [](const ImageSpec& spec) {
-      return std::tie(spec.model_file, spec.material_file, spec.environment_folder);
-    };
-    return scene(a->spec) < scene(b->spec);
+    return scene_of(a->spec) < scene_of(b->spec);
   });
   return queue;
+}
+
+/// Looks on from the first image of a scene, once, to the next scene of which anything is traced.
+void Execution::expect_next_scene(const Queue& queue, const PlannedImage& image) {
+  if (last_started_ != nullptr && scene_of(last_started_->spec) == scene_of(image.spec)) return;
+  last_started_ = &image;
+  const auto next = std::find_if(queue.begin(), queue.end(), [&](const PlannedImage* other) {
+    return (other->traces_paths() || other->trace_planes) &&
+           scene_of(other->spec) != scene_of(image.spec);
+  });
+  if (next != queue.end()) maker_.expect(**next);
 }
 
 /// Enters what stops one image.
@@ -224,6 +239,7 @@ void Execution::make_all(Queue queue) {
   while (!queue.empty() && !cut_short()) {
     const PlannedImage* image = queue.front();
     queue.pop_front();
+    expect_next_scene(queue, *image);
     const bool started = make_one(*image);
     take_kept();
     if (started) {

@@ -4,6 +4,7 @@
 #include "builder/make/plane_outputs.h"
 #include "tracer/base/error.h"
 #include "tracer/base/log.h"
+#include "tracer/device/plane_types.h"
 #include "tracer/render/develop.h"
 #include "tracer/render/film_file.h"
 
@@ -42,16 +43,29 @@ ImageMaker::ImageMaker(Dataset& dataset, Inputs& inputs, const TextSet& texts, D
       factory_(std::move(factory)),
       keeper_(dataset, texts, disk, placing) {}
 
+/// What the tracer will be asked of the image.
+SceneUse ImageMaker::use_of(const PlannedImage& image) const {
+  if (image.traces_paths()) return SceneUse::pictures;
+  const std::vector<PlaneOutput>& planes = dataset_.recipe.outputs.planes;
+  const bool materials = std::any_of(planes.begin(), planes.end(), [](const PlaneOutput& plane) {
+    return reads_materials(*plane.type);
+  });
+  return materials ? SceneUse::pictures : SceneUse::planes;
+}
+
 Renderer& ImageMaker::renderer() {
   if (no_device_) throw *no_device_;
-  if (renderer_) return *renderer_;
-  try {
-    renderer_ = factory_();
-  } catch (const Error& error) {
-    if (error.kind() != ErrorKind::device) throw;
-    throw no_device_.emplace(error.what());
+  if (!renderer_) {
+    try {
+      renderer_ = factory_();
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::device) throw;
+      throw no_device_.emplace(error.what());
+    }
+    renderer_->announce(std::exchange(upcoming_, {}));
   }
-  renderer_->announce(std::exchange(upcoming_, {}));
+  if (const PlannedImage* next = std::exchange(expected_, nullptr))
+    renderer_->expect(next->spec, use_of(*next));
   return *renderer_;
 }
 

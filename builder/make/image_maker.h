@@ -41,6 +41,8 @@ class ImageMaker {
   ImageKeeper& keeper() { return keeper_; }
   /// As Renderer::announce; the images must outlive this.
   void announce(std::vector<const ImageSpec*> images) { upcoming_ = std::move(images); }
+  /// As Renderer::expect, told when something of an image is traced; it must outlive this.
+  void expect(const PlannedImage& image) { expected_ = &image; }
   /// Of the renderer; none before anything was traced.
   ProgramCounts programs() const { return renderer_ ? renderer_->programs() : ProgramCounts{}; }
   /// Of the renderer; empty before anything was traced.
@@ -55,6 +57,7 @@ class ImageMaker {
   void trace_light(Work& work);
   bool lacks_light(const Work& work);
   FilmSums kept_film(const Work& work);
+  SceneUse use_of(const PlannedImage& image) const;
   Renderer& renderer();
 
   Dataset& dataset_;
@@ -63,6 +66,7 @@ class ImageMaker {
   std::unique_ptr<Renderer> renderer_;
   std::optional<NoDevice> no_device_;       ///< why there is no renderer, once that was tried
   std::vector<const ImageSpec*> upcoming_;  ///< announced before there was a renderer
+  const PlannedImage* expected_ = nullptr;  ///< until the renderer was told
   ImageKeeper keeper_;
 };
 

@@ -32,6 +32,10 @@ class Renderer {
   /// As Tracer::trace_planes.
   virtual std::vector<Plane> trace_planes(const ImageSpec& image,
                                           const std::vector<const PlaneType*>& types) = 0;
+  /// The image that will be asked for when this one is done, and what of it: what the host can do
+  /// for it is done in the background while this one is traced. It must outlive the renderer. A guess
+  /// that does not come true costs time only; an error is that image's, when it is asked for.
+  virtual void expect(const ImageSpec& /*image*/, SceneUse /*use*/) {}
   /// Images that will be traced, in this order, one of each kind: what they need is got ready in
   /// the background while others are traced. They must outlive the renderer.
   // NOLINTNEXTLINE(performance-unnecessary-value-param): who overrides it keeps the list

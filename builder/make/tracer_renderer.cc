@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/make/plane_outputs.h"
 #include "builder/make/renderer.h"
+#include "builder/make/scene_ahead.h"
 #include "builder/plan/keys.h"
 #include "tracer/base/error.h"
+#include "tracer/device/plane_types.h"
 #include "tracer/scene/sdl.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
 #include <deque>
 #include <filesystem>
 #include <optional>
-#include <tuple>
+#include <string>
+#include <system_error>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -21,7 +29,7 @@ class TracerRenderer : public Renderer {
   Film trace(const ImageSpec& image, FilmSums* kept,
              const std::function<void(const TraceProgress&)>& progress,
              const std::atomic<bool>& stop) override {
-    load(image);
+    load(image, SceneUse::pictures);
     tracer_.prepare(image.camera, image.engine);
     prepare_next();
     return tracer_.trace(image.camera, image.engine, progress, &stop, kept);
@@ -30,16 +38,19 @@ class TracerRenderer : public Renderer {
                         FilmSums* reached,
                         const std::function<void(const TraceProgress&)>& progress,
                         const std::atomic<bool>& stop) override {
-    load(image);
+    load(image, SceneUse::pictures);
     tracer_.prepare(image.camera, image.engine, types);
     prepare_next();
     return tracer_.trace_light(image.camera, image.engine, types, progress, &stop, reached);
   }
   std::vector<Plane> trace_planes(const ImageSpec& image,
                                   const std::vector<const PlaneType*>& types) override {
-    load(image);
+    const bool materials = std::any_of(
+        types.begin(), types.end(), [](const PlaneType* type) { return reads_materials(*type); });
+    load(image, materials ? SceneUse::pictures : SceneUse::planes);
     return tracer_.trace_planes(image.camera, image.engine.width, image.engine.height, types);
   }
+  void expect(const ImageSpec& image, SceneUse use) override { expected_ = Expected{&image, use}; }
   void announce(std::vector<const ImageSpec*> images) override {
     upcoming_.assign(images.begin(), images.end());
   }
@@ -47,16 +58,49 @@ class TracerRenderer : public Renderer {
   std::string device() const override { return tracer_.device_name(); }
 
  private:
-  using SceneName = std::tuple<std::filesystem::path, std::filesystem::path, std::filesystem::path>;
+  struct Expected {
+    const ImageSpec* image;
+    SceneUse use;
+  };
+  static std::string name_of(const ImageSpec& image) {
+    return fmt::format("{}\n{}\n{}", image.model_file->native(), image.material_file->native(),
+                       image.environment_folder->native());
+  }
 
-  void load(const ImageSpec& image) {
-    const SceneName wanted{image.model_file, image.material_file, image.environment_folder};
-    if (loaded_ == wanted) return;
-    loaded_.reset();  // a scene that fails half way is not the one before
-    Mesh mesh = inputs_.model_mesh(image.model_file, recipe_.normalise);
-    tracer_.set_scene(compose(inputs_.environment(image.environment_folder),
-                              inputs_.material(image.material_file), std::move(mesh)));
-    loaded_ = wanted;
+  void load(const ImageSpec& image, SceneUse use) {
+    const std::string wanted = name_of(image);
+    if (loaded_ != wanted) {
+      loaded_.clear();  // a scene that fails half way is not the one before
+      ReadyScenePointer scene = ahead_.take(wanted);
+      if (!scene) scene = source_of(image, use)();
+      tracer_.set_scene(std::move(scene));
+      loaded_ = wanted;
+    }
+    if (const auto next = std::exchange(expected_, std::nullopt)) start_ahead(*next);
+  }
+
+  void start_ahead(const Expected& next) {
+    // Of a model that takes gigabytes no second one is held.
+    constexpr std::uintmax_t k_most_bytes = std::uintmax_t{64} << 20U;
+    const std::string name = name_of(*next.image);
+    std::error_code unknown;
+    if (name == loaded_ ||
+        std::filesystem::file_size(*next.image->model_file, unknown) > k_most_bytes)
+      return;
+    try {
+      ahead_.start(name, source_of(*next.image, next.use));
+    } catch (const Error&) {  // a file that cannot be read fails its own images
+    }
+  }
+
+  /// What makes the scene, in whatever thread. Reads what `inputs_` must look up here.
+  SceneSource source_of(const ImageSpec& image, SceneUse use) {
+    const Scene& environment = inputs_.environment(image.environment_folder);
+    const Scene& material = inputs_.material(image.material_file);
+    return [this, use, engine = image.engine, &environment, &material, meshes = &inputs_.meshes(),
+            source = inputs_.model_source(image.model_file, recipe_.normalise)] {
+      return tracer_.make_ready(compose(environment, material, meshes->get(source)), use, engine);
+    };
   }
 
   /// Starts one program. Looks at a few images only: thousands may share one.
@@ -77,8 +121,10 @@ class TracerRenderer : public Renderer {
   Inputs& inputs_;
   const Recipe& recipe_;
   Tracer tracer_;
-  std::optional<SceneName> loaded_;
+  std::string loaded_;  ///< name of the tracer's scene; empty: none
   std::deque<const ImageSpec*> upcoming_;
+  std::optional<Expected> expected_;
+  SceneAhead ahead_;  ///< ends before the tracer does
 };
 
 }  // namespace

@@ -107,16 +107,19 @@ const Inputs::ModelFacts& Inputs::model(const std::filesystem::path& file) {
   });
 }
 
-Mesh Inputs::model_mesh(const std::filesystem::path& file, const NormaliseOptions& options) {
+Mesh ModelMeshes::get(const ModelSource& source) {
   constexpr std::size_t k_most_kept_triangles = 2'000'000;
-  const Hash128 part = hash_text(canonical_model(model_hashes(file), {true, true, true}, options));
-  if (last_mesh_ && last_mesh_->file == file && last_mesh_->part == part) return last_mesh_->mesh;
-  last_mesh_.reset();
-  const Model model = read_model(file);
-  if (mesh_hashes(model.mesh) != model_hashes(file))
-    fail(ErrorKind::asset, "{}: the model changed while the dataset was built", file.string());
-  Mesh mesh = normalise(model.mesh, options);
-  if (mesh.triangles.size() <= k_most_kept_triangles) last_mesh_ = LastMesh{file, part, mesh};
+  const Hash128 part =
+      hash_text(canonical_model(source.hashes, {true, true, true}, source.options));
+  const std::lock_guard lock(mutex_);
+  if (last_ && last_->file == source.file && last_->part == part) return last_->mesh;
+  last_.reset();
+  const Model model = read_model(source.file);
+  if (mesh_hashes(model.mesh) != source.hashes)
+    fail(ErrorKind::asset, "{}: the model changed while the dataset was built",
+         source.file.string());
+  Mesh mesh = normalise(model.mesh, source.options);
+  if (mesh.triangles.size() <= k_most_kept_triangles) last_ = Last{source.file, part, mesh};
   return mesh;
 }
 

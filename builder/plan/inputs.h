@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -22,6 +23,31 @@ namespace ds {
 enum class Stamps {
   trust,
   ignore,  ///< every file is read: a disk's or a file system's fault leaves the stamp as it was
+};
+
+/// A model to be read, and what it must be.
+struct ModelSource {
+  std::filesystem::path file;
+  MeshHashes hashes;  ///< as `Inputs::model_hashes`
+  NormaliseOptions options;
+};
+
+/// Models, read and normalised. The last one is kept: images of one model in several environments
+/// follow each other. Safe from several threads.
+class ModelMeshes {
+ public:
+  /// Throws what `read_model` throws, and Error(asset) where the file is no longer the one that was
+  /// hashed.
+  Mesh get(const ModelSource& source);
+
+ private:
+  struct Last {
+    std::filesystem::path file;
+    Hash128 part;  ///< of the model part
+    Mesh mesh;
+  };
+  std::mutex mutex_;
+  std::optional<Last> last_;
 };
 
 /// The files a recipe names, each read once. What was hashed before is known by its stamp (size,
@@ -48,11 +74,18 @@ class Inputs {
   MeshExtras model_has(const std::filesystem::path& file) { return model(file).has; }
   /// Of the file's coordinates; throws likewise.
   const Box& model_box(const std::filesystem::path& file) { return model(file).box; }
-  /// Reads and normalises. Throws Error(asset) where the file is no longer the one `model_hashes`
-  /// saw. The last one is kept: images of one model in several environments follow each other.
-  Mesh model_mesh(const std::filesystem::path& file, const NormaliseOptions& options);
+  /// As ModelMeshes::get, of the model that `model_hashes` saw.
+  Mesh model_mesh(const std::filesystem::path& file, const NormaliseOptions& options) {
+    return meshes_.get(model_source(file, options));
+  }
+  /// For `meshes`, which other threads may ask.
+  ModelSource model_source(const std::filesystem::path& file, const NormaliseOptions& options) {
+    return {file, model_hashes(file), options};
+  }
+  ModelMeshes& meshes() { return meshes_; }
   /// As read_material and read_environment give them; what pixels of their images tell is among
-  /// what their materials have of unphysical, and was warned of.
+  /// what their materials have of unphysical, and was warned of. They stay, and stay as they are, as
+  /// long as this does.
   const Scene& material(const std::filesystem::path& file);
   const Scene& environment(const std::filesystem::path& folder);
   /// Of an environment whose files have the stamps that they had when this program read it, without
@@ -112,12 +145,7 @@ class Inputs {
   };
   std::vector<NewContent> new_contents_;
   std::vector<NewModel> new_models_;
-  struct LastMesh {
-    std::filesystem::path file;
-    Hash128 part;  ///< of the model part
-    Mesh mesh;
-  };
-  std::optional<LastMesh> last_mesh_;
+  ModelMeshes meshes_;
   Known<Sphere> spheres_;
   std::map<Hash128, Sphere> new_spheres_;      ///< by the hash of the model part
   std::map<Hash128, InputBounds> new_bounds_;  ///< by the hash of the image and its use

@@ -19,8 +19,7 @@ constexpr double k_trimmed = 0.001;
 constexpr double k_relative_floor = 0.01;
 
 double luminance_at(const Film& film, std::size_t pixel) {
-  return luminance(
-      Vec3{film.rgb[3 * pixel], film.rgb[3 * pixel + 1], film.rgb[3 * pixel + 2]});
+  return luminance(Vec3{film.rgb[3 * pixel], film.rgb[3 * pixel + 1], film.rgb[3 * pixel + 2]});
 }
 
 std::size_t pixel_count(const Film& film) {

@@ -22,10 +22,10 @@ class FakeRenderer : public Renderer {
  public:
   /// What all fakes of one build share.
   struct Calls {
-    std::vector<std::string> traced, planes, announced;  ///< ids in order
-    std::atomic<std::size_t> films{0};                   ///< traced; for other threads
-    std::string fails_on;                                ///< id of an image that cannot be traced
-    std::map<std::string, std::uint64_t> rejected;       ///< samples that are NaN, by id
+    std::vector<std::string> traced, planes, announced, expected;  ///< ids in order
+    std::atomic<std::size_t> films{0};                             ///< traced; for other threads
+    std::string fails_on;                           ///< id of an image that cannot be traced
+    std::map<std::string, std::uint64_t> rejected;  ///< samples that are NaN, by id
     std::atomic<bool>* stop_after_one = nullptr;
   };
   explicit FakeRenderer(Calls& calls) : calls_(calls) {}
@@ -64,6 +64,9 @@ class FakeRenderer : public Renderer {
     calls_.planes.push_back(image.id);
     return planes_by_seed(image, types,
                           hash64_text(read_text_file(image.model_file) + *image.view));
+  }
+  void expect(const ImageSpec& image, SceneUse /*use*/) override {
+    calls_.expected.push_back(image.id);
   }
   void announce(std::vector<const ImageSpec*> images) override {
     for (const ImageSpec* image : images)

@@ -147,9 +147,21 @@ Device::Device(const std::string& selector) : state_(std::make_unique<State>()) 
   state_->queue.reset(clCreateCommandQueue(state_->context.get(), state_->device.id, 0, &code));
   check_cl(code, "clCreateCommandQueue");
 }
+Device::Device(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Device::~Device() = default;
 Device::Device(Device&&) noexcept = default;
 Device& Device::operator=(Device&&) noexcept = default;
+
+Device Device::beside() const {
+  auto state = std::make_unique<State>();
+  state->device = state_->device;
+  check_cl(clRetainContext(state_->context.get()), "clRetainContext");
+  state->context.reset(state_->context.get());
+  cl_int code = CL_SUCCESS;
+  state->queue.reset(clCreateCommandQueue(state->context.get(), state->device.id, 0, &code));
+  check_cl(code, "clCreateCommandQueue");
+  return Device(std::move(state));
+}
 
 const DeviceInfo& Device::info() const {
   return state_->device.info;

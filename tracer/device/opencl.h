@@ -107,6 +107,10 @@ class Device {
   Device(Device&&) noexcept;
   Device& operator=(Device&&) noexcept;
 
+  /// The same device by a queue of its own, so that one thread works with this and another with
+  /// that; each one's buffers and programs are the other's too.
+  Device beside() const;
+
   const DeviceInfo& info() const;
 
   /// Uninitialised memory. Size 0 gives a buffer of the least size, whose `size_bytes` is 0. On CPU
@@ -139,6 +143,7 @@ class Device {
 
  private:
   struct State;
+  explicit Device(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 

@@ -33,7 +33,8 @@ double removed_share(const FilmSums& sums) {
   double kept = 0;
   for (std::size_t q = 0; q < 4; ++q)
     for (std::size_t c = 0; c < 3; ++c)
-      kept += k_luminance_weights[c] * total(sums, q * kernels::k_film_quarter + kernels::k_film_sum + c);
+      kept += k_luminance_weights[c] *
+              total(sums, q * kernels::k_film_quarter + kernels::k_film_sum + c);
   return removed / (kept + removed);
 }
 

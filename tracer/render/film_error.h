@@ -9,7 +9,6 @@
 
 namespace ds {
 
-
 /// A root mean squared error and its 95 % interval.
 struct ErrorEstimate {
   double value = 0, low = 0, high = 0;

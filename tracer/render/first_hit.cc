@@ -101,29 +101,24 @@ std::vector<Plane> Tracer::State::launch_planes(const DeviceScene& of, const Sce
 std::vector<Plane> Tracer::trace_planes(const Camera& camera, int width, int height,
                                         const std::vector<const PlaneType*>& types) {
   State& s = *state_;
-  if (!s.scene) fail(ErrorKind::device, "no scene was set before tracing");
+  if (!s.ready) fail(ErrorKind::device, "no scene was set before tracing");
   std::vector<const PlaneType*> of_scene, of_model;
   for (const PlaneType* type : types)
     ((type->traits & kernels::k_plane_alone) != 0 ? of_model : of_scene).push_back(type);
   std::vector<Plane> traced, of_alone;
   if (!of_scene.empty()) {
-    if (!s.packed_for) {
-      Features features = s.features(*s.scene, camera);
-      features.lens = false;
-      s.take(pack_scene(*s.scene, features, s.quality(), s.options.bvh_width, &s.pack_cache),
-             features);
-    }
-    traced = s.launch_planes(s.device_scene, *s.scene, camera, width, height, of_scene);
+    if (read_materials(of_scene))
+      s.take_materials(camera);
+    else
+      s.take_surfaces();
+    traced = s.launch_planes(s.device_scene, s.scene(), camera, width, height, of_scene);
   }
   if (!of_model.empty()) {
-    const Scene alone = model_alone(*s.scene);
+    const Scene alone = model_alone(s.scene());
     if (has_triangles(alone)) {
       if (!s.device_model) {
         DeviceScene model;
-        model.take(s.device,
-                   pack_scene(alone, features_of(alone, camera), s.quality(), s.options.bvh_width,
-                              &s.pack_cache),
-                   s.uploads);
+        model.take(s.device, s.maker.pack_surfaces(alone), s.uploads);
         s.device_model = model;
       }
       of_alone = s.launch_planes(*s.device_model, alone, camera, width, height, of_model);

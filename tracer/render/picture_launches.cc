@@ -31,7 +31,7 @@ std::vector<std::uint32_t> launch_words(const FilmSums& film, std::span<const Ti
 /// work-items for each processor, up to eight tiles: lanes idle only when no pixel is left for
 /// them. Fewer where pixels have thousands of samples, which keep lanes busy by themselves: a
 /// launch is to end soon after it is to stop. A GPU has threads for all.
-std::size_t Tracer::Picture::share_of(std::span<const TileStep> steps) const {
+std::size_t Tracer::PictureLaunches::share_of(std::span<const TileStep> steps) const {
   if (s_.options.item_pixels > 0) return static_cast<std::size_t>(s_.options.item_pixels);
   if (!s_.device.info().is_cpu) return static_cast<std::size_t>(s_.lanes);
   constexpr std::size_t most_samples = 4096;  // of a pixel of each tile
@@ -46,9 +46,9 @@ std::size_t Tracer::Picture::share_of(std::span<const TileStep> steps) const {
 
 /// Work-items from `begin` on that take about half a second, or some for each processor where
 /// nothing is known of their time yet.
-Tracer::Picture::Launch Tracer::Picture::next_launch(std::span<const TileStep> steps,
-                                                     std::size_t share, std::size_t begin,
-                                                     std::size_t items) const {
+Tracer::PictureLaunches::Launch Tracer::PictureLaunches::next_launch(
+    std::span<const TileStep> steps, std::size_t share, std::size_t begin,
+    std::size_t items) const {
   const std::size_t least =
       s_.local_size * std::max<std::size_t>(s_.device.info().compute_units, 1) * 8;
   const double wanted = 0.5 * samples_a_second_;
@@ -66,8 +66,8 @@ Tracer::Picture::Launch Tracer::Picture::next_launch(std::span<const TileStep> s
   return launch;
 }
 
-void Tracer::Picture::add(std::span<const TileStep> steps,
-                          const std::function<void(std::uint64_t)>& progress) {
+void Tracer::PictureLaunches::add(std::span<const TileStep> steps,
+                                  const std::function<void(std::uint64_t)>& progress) {
   if (steps.empty()) return;
   const std::size_t share = share_of(steps);
   const std::size_t pixels = steps.size() * kernels::k_tile_pixels;

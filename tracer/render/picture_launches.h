@@ -13,21 +13,21 @@
 namespace ds {
 
 /// One picture under way: its film on the device, and how it gets more samples.
-class Tracer::Picture {
+class Tracer::PictureLaunches {
  public:
   /// `light_planes`: how many the program traces beside it; then the film must be empty.
-  Picture(State& state, const Camera& camera, const EngineSettings& engine, FilmSums film,
-          std::size_t light_planes, const std::atomic<bool>* stop)
+  PictureLaunches(State& state, const Camera& camera, const EngineSettings& engine, FilmSums film,
+                  std::size_t light_planes, const std::atomic<bool>* stop)
       : s_(state), film_(std::move(film)), stop_(stop) {
     const kernels::ViewData view =
-        view_data(camera, engine, ray_start_m(*s_.scene, camera, engine.width, engine.height));
+        view_data(camera, engine, ray_start_m(s_.scene(), camera, engine.width, engine.height));
     view_ = s_.device.upload(std::as_bytes(std::span(&view, 1)));
     sums_ = s_.device.upload(film_.planes);
     const DeviceScene& t = s_.device_scene;
     unsigned argument = 0;
     const Buffer &v = view_, &guide = s_.guide;
-    for (const Buffer* b : {&t.nodes, &t.leaves, &t.triangles, &t.materials, &t.texture_code, &t.lights,
-                            &t.tables, &t.data, &guide, &v})
+    for (const Buffer* b : {&t.nodes, &t.leaves, &t.triangles, &t.materials, &t.texture_code,
+                            &t.lights, &t.tables, &t.data, &guide, &v})
       s_.path_kernel.set(argument++, *b);
     launch_argument_ = argument;
     s_.path_kernel.set(++argument, sums_);

@@ -142,13 +142,25 @@ struct RayCounts {
   bool operator==(const RayCounts&) const = default;
 };
 
+/// What is to be traced of a scene. `planes`: such as ask for no material (reads_materials) and no
+/// light.
+enum class SceneUse { pictures, planes };
+
+/// What the host makes of a scene before the device is asked (scene_maker.h).
+struct ReadyScene;
+struct ReadySceneDeleter {
+  void operator()(ReadyScene* scene) const;
+};
+using ReadyScenePointer = std::unique_ptr<ReadyScene, ReadySceneDeleter>;
+
 /// Tables of scenes that went to the device, and those that were there already.
 struct UploadCounts {
   std::uint64_t tables = 0, bytes = 0;
   std::uint64_t kept_tables = 0, kept_bytes = 0;
 };
 
-/// Traces pictures on one device. Not safe from two threads at once; use one a thread.
+/// Traces pictures on one device. Not safe from two threads at once, but for `make_ready`; use one
+/// a thread.
 /// Keeps the last scene's device data, so many cameras of one scene cost one upload, and what the
 /// next scene has in common with it none.
 class Tracer {
@@ -162,6 +174,12 @@ class Tracer {
   /// Takes the scene (images are loaded), checks its numbers (scene_check.h); trees and programs
   /// are built when the first picture needs them. Throws Error(asset) or Error(device).
   void set_scene(Scene scene);
+  /// What set_scene and the first picture of these settings, or planes, then do before they launch
+  /// anything: trees, tables, photons. From any thread, also while another one traces; nothing of
+  /// what it gives depends on that. Throws what set_scene and preparing a picture throw.
+  ReadyScenePointer make_ready(Scene scene, SceneUse use, const EngineSettings& engine);
+  /// Takes a scene that this tracer made ready, for whatever use.
+  void set_scene(ReadyScenePointer scene);
   /// Path-traces the scene set. Calls `progress` about twice a second; stops early with
   /// Error(cancelled) once `*stop`. `kept` is a film of this very picture that tracing goes on from
   /// where that gives the bits of one go (only samples and target may differ), else it is dropped;
@@ -199,8 +217,8 @@ class Tracer {
 
  private:
   std::vector<std::uint8_t> error_region(const Camera& camera, const EngineSettings& engine);
-  class Picture;
-  Film finish(Picture& picture, const Camera& camera, const EngineSettings& engine,
+  class PictureLaunches;
+  Film finish(PictureLaunches& picture, const Camera& camera, const EngineSettings& engine,
               const std::function<void(const TraceProgress&)>& progress);
 
   struct State;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tracer/base/error.h"
 #include "tracer/render/film.h"
 #include "tracer/render/picture_launches.h"
 #include "tracer/render/pixel_filter.h"
 #include "tracer/render/render.h"
 #include "tracer/render/schedule.h"
 #include "tracer/render/tracer_state.h"
-#include "tracer/scene/scene_check.h"
 
 #include <algorithm>
 
@@ -34,13 +34,30 @@ bool Tracer::runs_on_cpu() const {
   return state_->device.info().is_cpu;
 }
 
+void ReadySceneDeleter::operator()(ReadyScene* scene) const {
+  delete scene;
+}
+
 void Tracer::set_scene(Scene scene) {
-  state_->scene.reset();
-  state_->packed_for.reset();
-  state_->device_model.reset();
-  state_->images.load(scene);
-  check_scene(scene);
-  state_->scene = std::move(scene);
+  state_->forget_scene();
+  state_->ready = state_->maker.take(std::move(scene), SceneUse::pictures);
+}
+
+ReadyScenePointer Tracer::make_ready(Scene scene, SceneUse use, const EngineSettings& engine) {
+  ReadyScenePointer ready(new ReadyScene(state_->maker.take(std::move(scene), use)));
+  state_->maker.pack_ahead(*ready);
+  if (ready->numbering && ready->numbering->guide) {
+    ready->guide_photons = photons_for(engine);
+    ready->guide =
+        state_->guides.make(ready->scene, *ready->packed, *ready->numbering, ready->guide_photons);
+  }
+  return ready;
+}
+
+void Tracer::set_scene(ReadyScenePointer scene) {
+  DS_ASSERT(scene != nullptr);
+  state_->forget_scene();
+  state_->ready = std::move(*scene);
 }
 
 void Tracer::prepare(const Camera& camera, const EngineSettings& engine,
@@ -75,7 +92,7 @@ std::vector<std::uint8_t> Tracer::error_region(const Camera& camera, const Engin
 }
 
 /// Traces what the picture lacks.
-Film Tracer::finish(Picture& picture, const Camera& camera, const EngineSettings& engine,
+Film Tracer::finish(PictureLaunches& picture, const Camera& camera, const EngineSettings& engine,
                     const std::function<void(const TraceProgress&)>& progress) {
   const std::uint64_t before = picture.film().samples();
   const int most = engine.target ? engine.target->max_spp : engine.spp;
@@ -115,7 +132,7 @@ Film Tracer::trace(const Camera& camera, const EngineSettings& engine,
   state_->prepare(camera, engine);
   FilmSums begun = kept != nullptr ? std::move(*kept) : FilmSums{};
   if (!goes_on(engine, begun)) begun = empty_film(engine.width, engine.height);
-  Picture picture(*state_, camera, engine, std::move(begun), 0, stop);
+  PictureLaunches picture(*state_, camera, engine, std::move(begun), 0, stop);
   Film film = finish(picture, camera, engine, progress);
   if (kept != nullptr) *kept = std::move(picture.film());
   return film;
@@ -126,8 +143,8 @@ LitPlanes Tracer::trace_light(const Camera& camera, const EngineSettings& engine
                               const std::function<void(const TraceProgress&)>& progress,
                               const std::atomic<bool>* stop, FilmSums* reached) {
   state_->prepare(camera, engine, types);
-  Picture picture(*state_, camera, engine, empty_film(engine.width, engine.height), types.size(),
-                  stop);
+  PictureLaunches picture(*state_, camera, engine, empty_film(engine.width, engine.height),
+                          types.size(), stop);
   LitPlanes traced;
   traced.film = finish(picture, camera, engine, progress);
   if (!types.empty())

@@ -6,9 +6,10 @@
 #include "tracer/device/program_text.h"
 #include "tracer/device/scene_pack.h"
 #include "tracer/render/device_scene.h"
-#include "tracer/render/loaded_images.h"
+#include "tracer/render/guide_maker.h"
 #include "tracer/render/path_programs.h"
 #include "tracer/render/render.h"
+#include "tracer/render/scene_maker.h"
 
 #include <deque>
 #include <optional>
@@ -16,9 +17,6 @@
 
 /// What is behind a Tracer; for tracer/render's own files.
 namespace ds {
-
-/// Of images, and of what is made of scenes, that are kept for scenes to come.
-inline constexpr std::size_t k_most_cached_bytes = std::size_t{256} << 20U;
 
 inline std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
@@ -31,9 +29,18 @@ struct Tracer::State {
   /// (numbers), which may change from picture to picture.
   void prepare(const Camera& camera, const EngineSettings& engine,
                const std::vector<const PlaneType*>& light_planes = {});
-  /// Uploads the scene; keeps what a guide will be made of.
-  void take(PackedScene scene_words, const Features& numbering);
-  std::vector<std::uint32_t> make_guide(std::size_t photon_count);
+  void forget_scene();
+  const Scene& scene() const { return ready->scene; }
+  /// The scene's words with these numbers: those made ready, or made now.
+  PackedScene words_for(const Features& numbering);
+  /// Uploads the scene; keeps what a guide will be made of. `numbering`: ReadyScene's.
+  void take(PackedScene scene_words, const std::optional<Features>& numbering);
+  /// Uploads at least what planes read.
+  void take_surfaces();
+  /// And what those read that ask for materials.
+  void take_materials(const Camera& camera);
+  /// Of the scene that is packed.
+  std::vector<std::uint32_t> guide_words(std::size_t photons);
   /// Whether any light shines. In a scene where none does, no ray is traced.
   bool is_lit(const Camera& camera) const;
   /// Gives the path kernel a row of counts for each work-item, as its last argument.
@@ -54,27 +61,24 @@ struct Tracer::State {
     all.chooser_depth = own.chooser_depth;
     return all;
   }
-  BvhQuality quality() const {
-    return options.high_quality_bvh ? BvhQuality::high : BvhQuality::medium;
-  }
 
   TracerOptions options;
   Device device;
   int lanes;
   PathPrograms programs;  ///< ends before the device does
   std::size_t local_size = 8;
-  std::optional<Scene> scene;
-  LoadedImages images{k_most_cached_bytes};
-  PackCache pack_cache{k_most_cached_bytes};
+  SceneMaker maker;
+  GuideMaker guides;
+  std::optional<ReadyScene> ready;  ///< the scene set; its words until they are uploaded
   DeviceScene device_scene;
+  bool on_device = false;  ///< it is this scene's
   UploadCounts uploads;
-  std::optional<Features> packed_for, program_for;
+  std::optional<Features> packed_for;  ///< numbers on the device; none: no picture can be traced
+  std::optional<Features> program_for;
   MathMode program_math = MathMode::strict;
   std::optional<PackedScene> packed;
   Buffer guide;
   std::optional<std::size_t> guide_photons;  ///< that `guide` is made of; none: of another scene
-  Kernel rays_kernel;
-  bool has_rays_program = false;
   Buffer count_rows;
   RayCounts ray_counts;
   Kernel path_kernel;

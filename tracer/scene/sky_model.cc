@@ -75,8 +75,7 @@ SkyModel::SkyModel(const SkySettings& settings) : settings_(settings) {
       (portable::k_pi * k_sun_sin_radius * k_sun_sin_radius * settings.sun_direction.z);
   from_ground_ = settings.ground_albedo * (sun + irradiance_of_clear_sky()) * (1 / portable::k_pi);
   Ring ring;
-  const double brightness =
-      settings.ground_autoscale ? luxcore_luminance(sky({0, 0, 1}, ring)) : 1;
+  const double brightness = settings.ground_autoscale ? luxcore_luminance(sky({0, 0, 1}, ring)) : 1;
   ground_ = settings.ground_color * brightness;
 }
 

@@ -65,6 +65,17 @@ TEST_F(BuildTest, AnnouncesOneImageOfEachKindInTheOrderTheyAreTraced) {
   EXPECT_THAT(calls.announced, IsEmpty());
 }
 
+TEST_F(BuildTest, ExpectsTheNextSceneWhenOneIsBegun) {
+  request.overrides = {"materials.assign=all"};
+  build();
+  // Two models of four views with two materials, by turns in two environments: eight scenes of two
+  // images each.
+  ASSERT_THAT(calls.traced, SizeIs(2 * 4 * 2));
+  ASSERT_THAT(calls.expected, SizeIs(7));
+  for (std::size_t i = 0; i < calls.expected.size(); ++i)
+    EXPECT_EQ(calls.expected[i], calls.traced[2 * (i + 1)]);
+}
+
 TEST_F(BuildTest, AToneMapDevelopsAnewAndTracesNothing) {
   build();
   const auto before = contents();

@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <future>
 #include <numbers>
 #include <thread>
 
@@ -220,6 +221,34 @@ pictures::Picture box_under_a_sky(Vec3 half) {
   p.engine.height = k_height;
   p.engine.spp = 2;
   return p;
+}
+
+TEST(ReadyScenes, HaveTheSameBitsMadeInAnotherThread) {
+  const pictures::Picture first = box_under_a_sky({0.5f, 0.5f, 0.5f});
+  const pictures::Picture second = box_under_a_sky({0.3f, 0.5f, 0.7f});
+  const std::string wanted = pictures::film_hash(pictures::trace(second));
+  Tracer tracer(pictures::tracer_options());
+  for (const SceneUse use : {SceneUse::pictures, SceneUse::planes}) {
+    auto next = std::async(std::launch::async,
+                           [&] { return tracer.make_ready(second.scene, use, second.engine); });
+    tracer.set_scene(first.scene);
+    tracer.trace(first.camera, first.engine);
+    tracer.set_scene(next.get());
+    tracer.trace_geometry(second.camera, k_width, k_height);
+    EXPECT_EQ(pictures::film_hash(tracer.trace(second.camera, second.engine)), wanted);
+  }
+}
+
+TEST(ReadyScenes, ForPlanesReadNoImageAndUploadNoTable) {
+  pictures::Picture p = box_under_a_sky({0.5f, 0.5f, 0.5f});
+  const Geometry wanted = geometry_of(p.scene, p.camera);
+  p.scene.images[0] = {};
+  p.scene.images[0].file = "there-is-no-such.hdr";
+  Tracer tracer(pictures::tracer_options());
+  EXPECT_THROW(tracer.make_ready(p.scene, SceneUse::pictures, p.engine), Error);
+  tracer.set_scene(tracer.make_ready(p.scene, SceneUse::planes, p.engine));
+  EXPECT_EQ(tracer.trace_geometry(p.camera, k_width, k_height).depth, wanted.depth);
+  EXPECT_THROW(tracer.trace(p.camera, p.engine), Error);
 }
 
 TEST(Uploads, AreOfWhatTheNextSceneHasOfItsOwn) {
