@@ -41,8 +41,10 @@ std::vector<Photon> from_two_places(float far) {
   return photons;
 }
 
-TEST(Guide, LooksToWherePhotonsCameFrom) {
-  const std::vector<float> table = as_floats(guide_table(from_two_places(1), {0, 0, 0}, 1));
+/// `started`: photons, which decides on the size of cells.
+void expect_to_look_at_two_places(std::size_t started) {
+  const std::vector<float> table =
+      as_floats(guide_table(from_two_places(1), started, {0, 0, 0}, 1));
   const auto guide = [&](float x, float y, float z) {
     return kernels::guide_at(table.data(), true, kernels::vec(x, y, z));
   };
@@ -63,7 +65,12 @@ TEST(Guide, LooksToWherePhotonsCameFrom) {
   EXPECT_FALSE(guide(2, 0, 0).there);
   EXPECT_FALSE(guide(100, 0, 0).there);
   EXPECT_FALSE(guide(NAN, 0, 0).there);
-  const std::vector<float> none = as_floats(guide_table({}, {0, 0, 0}, 1));
+}
+
+TEST(Guide, LooksToWherePhotonsCameFrom) {
+  expect_to_look_at_two_places(k_photons_of_fine_cells);
+  expect_to_look_at_two_places(400);
+  const std::vector<float> none = as_floats(guide_table({}, 0, {0, 0, 0}, 1));
   EXPECT_FALSE(kernels::guide_at(none.data(), true, kernels::vec(0, 0, 0)).there);
 }
 
@@ -73,7 +80,8 @@ TEST(Guide, DirectionsFollowTheirDensity) {
   constexpr SphereCells cells{20, 40};
   constexpr int k_samples = 200000;
   for (const float away : {1.0f, 0.03f}) {
-    const std::vector<float> table = as_floats(guide_table(from_two_places(away), {0, 0, 0}, 1));
+    const std::vector<float> table =
+        as_floats(guide_table(from_two_places(away), k_photons_of_fine_cells, {0, 0, 0}, 1));
     const kernels::Guide guide = kernels::guide_at(table.data(), true, kernels::vec(0, 0, 0));
     ASSERT_TRUE(guide.there);
     std::vector<double> counts(cells.count());

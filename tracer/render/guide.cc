@@ -11,8 +11,13 @@
 namespace ds {
 namespace {
 
-constexpr std::size_t k_side = 64;
 constexpr std::size_t k_least_photons = 4;  ///< that make a cell look anywhere
+
+/// Cells along a side. Photons fall on surfaces: a quarter of them in cells of twice the size are as
+/// many in each.
+std::size_t side_for(std::size_t photons) {
+  return photons < k_photons_of_fine_cells ? 32 : 64;
+}
 
 /// A photon's source, and what it counts for.
 struct Source {
@@ -74,23 +79,26 @@ std::vector<Cluster> clusters_of(std::span<Source> sources) {
 
 class Cube {
  public:
-  Cube(Vec3 centre, float radius)
-      : side_(4 * double{radius}),
-        low_{double{centre.x} - side_, double{centre.y} - side_, double{centre.z} - side_},
-        per_metre_(double{k_side} / (2 * side_)) {}
+  Cube(Vec3 centre, float radius, std::size_t side)
+      : side_(side),
+        half_(4 * double{radius}),
+        low_{double{centre.x} - half_, double{centre.y} - half_, double{centre.z} - half_},
+        per_metre_(static_cast<double>(side) / (2 * half_)) {}
+  std::size_t side() const { return side_; }
   Vec3d low() const { return low_; }
   double per_metre() const { return per_metre_; }
   /// The cell along each axis; may lie outside.
   std::array<long, 3> cell(Vec3 at) const {
     const Vec3d p = per_metre_ * (to_double(at) - low_);
-    const auto held = [](double x) {
-      return static_cast<long>(std::floor(std::clamp(x, -10.0, double{k_side} + 10)));
+    const auto held = [&](double x) {
+      return static_cast<long>(std::floor(std::clamp(x, -10.0, static_cast<double>(side_) + 10)));
     };
     return {held(p.x), held(p.y), held(p.z)};
   }
 
  private:
-  double side_;
+  std::size_t side_;
+  double half_;
   Vec3d low_;
   double per_metre_;
 };
@@ -104,30 +112,34 @@ std::uint32_t bits(double value) {
 class PhotonCells {
  public:
   PhotonCells(std::span<const Photon> photons, const Cube& cube)
-      : begin_(k_cells + 1, 0), near_(k_rim_side * k_rim_side * k_rim_side, 0) {
+      : side_(static_cast<long>(cube.side())),
+        cells_(cube.side() * cube.side() * cube.side()),
+        begin_(cells_ + 1, 0),
+        near_((cube.side() + 2) * (cube.side() + 2) * (cube.side() + 2), 0) {
     std::vector<std::size_t> place;
     place.reserve(photons.size());
     for (const Photon& photon : photons) {
       const auto [x, y, z] = cube.cell(photon.position);
       const bool inside = is_inside(x) && is_inside(y) && is_inside(z);
-      place.push_back(inside ? number(x, y, z) : k_cells);
+      place.push_back(inside ? number(x, y, z) : cells_);
       if (!inside) continue;
       ++begin_[number(x, y, z) + 1];
     }
-    for (std::size_t cell = 0; cell < k_cells; ++cell) {
+    for (std::size_t cell = 0; cell < cells_; ++cell) {
       if (begin_[cell + 1] > 0) count_near(cell, begin_[cell + 1]);
       begin_[cell + 1] += begin_[cell];
     }
     // In the photons' order within a cell: sums depend on it.
-    sources_.resize(begin_[k_cells]);
+    sources_.resize(begin_[cells_]);
     std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
     for (std::size_t i = 0; i < photons.size(); ++i)
-      if (place[i] < k_cells)
+      if (place[i] < cells_)
         sources_[next[place[i]]++] = {to_double(photons[i].source), double{photons[i].power}};
   }
-  static std::size_t number(long x, long y, long z) {
-    return static_cast<std::size_t>((z * long{k_side} + y) * long{k_side} + x);
+  std::size_t number(long x, long y, long z) const {
+    return static_cast<std::size_t>((z * side_ + y) * side_ + x);
   }
+  std::size_t count() const { return cells_; }
   /// Photons that `gather` finds.
   std::size_t near(long x, long y, long z) const { return near_[rim_number(x, y, z)]; }
   /// Of a cell and, for less, of the 26 around it: a cell's own are few.
@@ -145,23 +157,22 @@ class PhotonCells {
   }
 
  private:
-  static constexpr std::size_t k_cells = k_side * k_side * k_side;
-  static constexpr std::size_t k_rim_side = k_side + 2;  ///< with the cells just outside
-
-  static bool is_inside(long i) { return i >= 0 && i < long{k_side}; }
-  static std::size_t rim_number(long x, long y, long z) {
-    return static_cast<std::size_t>(((z + 1) * long{k_rim_side} + y + 1) * long{k_rim_side} + x +
-                                    1);
+  bool is_inside(long i) const { return i >= 0 && i < side_; }
+  std::size_t rim_number(long x, long y, long z) const {
+    const long rim_side = side_ + 2;  // with the cells just outside
+    return static_cast<std::size_t>(((z + 1) * rim_side + y + 1) * rim_side + x + 1);
   }
   void count_near(std::size_t cell, std::uint32_t count) {
-    const auto x = static_cast<long>(cell % k_side), y = static_cast<long>(cell / k_side % k_side),
-               z = static_cast<long>(cell / (k_side * k_side));
+    const long i = static_cast<long>(cell);
+    const long x = i % side_, y = i / side_ % side_, z = i / (side_ * side_);
     for (long w = z - 1; w < z + 2; ++w)
       for (long v = y - 1; v < y + 2; ++v)
         for (long u = x - 1; u < x + 2; ++u)
           near_[rim_number(u, v, w)] += count;
   }
 
+  long side_;
+  std::size_t cells_;
   std::vector<Source> sources_;       ///< of the first cell, of the second, ...
   std::vector<std::uint32_t> begin_;  ///< of each cell in sources_, and the end
   std::vector<std::uint32_t> near_;   ///< photons in and around each cell
@@ -188,24 +199,26 @@ void add_lobes(std::span<Source> sources, double radius, std::vector<std::uint32
 
 }  // namespace
 
-std::vector<std::uint32_t> guide_table(std::span<const Photon> photons, Vec3 centre, float radius) {
+std::vector<std::uint32_t> guide_table(std::span<const Photon> photons, std::size_t started,
+                                       Vec3 centre, float radius) {
   // No side: every place is outside.
   if (photons.empty()) return std::vector<std::uint32_t>(kernels::k_guide_cells, 0);
-  const Cube cube(centre, radius);
+  const Cube cube(centre, radius, side_for(started));
   const PhotonCells cells(photons, cube);
-  std::vector<std::uint32_t> words(kernels::k_guide_cells + k_side * k_side * k_side, 0);
-  words[kernels::k_guide_side] = k_side;
+  const auto side = static_cast<long>(cube.side());
+  std::vector<std::uint32_t> words(kernels::k_guide_cells + cells.count(), 0);
+  words[kernels::k_guide_side] = static_cast<std::uint32_t>(side);
   words[kernels::k_guide_origin] = bits(cube.low().x);
   words[kernels::k_guide_origin + 1] = bits(cube.low().y);
   words[kernels::k_guide_origin + 2] = bits(cube.low().z);
   words[kernels::k_guide_per_metre] = bits(cube.per_metre());
   std::vector<Source> sources;
-  for (long z = 0; z < long{k_side}; ++z)
-    for (long y = 0; y < long{k_side}; ++y)
-      for (long x = 0; x < long{k_side}; ++x) {
+  for (long z = 0; z < side; ++z)
+    for (long y = 0; y < side; ++y)
+      for (long x = 0; x < side; ++x) {
         if (cells.near(x, y, z) < k_least_photons) continue;
         cells.gather(x, y, z, sources);
-        words[kernels::k_guide_cells + PhotonCells::number(x, y, z)] =
+        words[kernels::k_guide_cells + cells.number(x, y, z)] =
             static_cast<std::uint32_t>(words.size());
         add_lobes(sources, double{radius}, words);
       }

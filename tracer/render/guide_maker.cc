@@ -39,7 +39,7 @@ Ball ball_of_model(const Scene& scene) {
 std::size_t photons_for(const EngineSettings& engine) {
   const std::size_t pixels =
       static_cast<std::size_t>(engine.width) * static_cast<std::size_t>(engine.height);
-  return std::clamp(2 * pixels, std::size_t{1} << 14, std::size_t{1} << 17);
+  return std::clamp(2 * pixels, std::size_t{1} << 12, std::size_t{1} << 17);
 }
 
 GuideMaker::GuideMaker(const Device& device, std::filesystem::path cache_folder)
@@ -76,7 +76,7 @@ std::vector<std::uint32_t> GuideMaker::make(const Scene& scene, const PackedScen
       trace_photons(scene, packed, numbering, photons,
                     [&](std::span<const RayWords> rays) { return trace(rays, nodes, leaves); });
   const Ball ball = ball_of_model(scene);
-  return guide_table(found, ball.centre, ball.radius);
+  return guide_table(found, photons, ball.centre, ball.radius);
 }
 
 }  // namespace ds

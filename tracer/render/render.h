@@ -237,6 +237,6 @@ std::string canonical_kept_engine(const Scene& scene, const Camera& camera,
 std::string canonical_camera(const Camera& camera);
 /// Bumped when host code that can move a pixel changes (mesh normalisation, packing, sky model,
 /// sampling tables, the guide to caustics).
-inline constexpr int k_host_render_version = 9;
+inline constexpr int k_host_render_version = 10;
 
 }  // namespace ds
