@@ -274,7 +274,7 @@ Product ImageKeeper::developed(Ready& ready, const OutputFile& output,
     keep_bytes(ready, std::move(film_product), encode_film_exr(film), traced.film_run);
   }
   const auto start = Clock::now();
-  const Picture picture = develop(film, traced.tone_map);
+  const BytePicture picture = develop(film, traced.tone_map);
   ready.work.developed = true;
   product.tone_map_scale = tone_map_scale(film, traced.tone_map);
   product.pixel_counts = count_picture(picture.pixels, picture.channels);

@@ -80,7 +80,7 @@ double hyab(const Color& a, const Color& b) {
   return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
 }
 
-Channels planes_of(const Picture& picture) {
+Channels planes_of(const BytePicture& picture) {
   DS_ASSERT(picture.channels == 3);
   const Channel empty(picture.width, picture.height);
   Channels channels{empty, empty, empty};
@@ -195,7 +195,7 @@ Channel achromatic(const Channels& channels) {
 
 }  // namespace
 
-double flip(const Picture& reference, const Picture& test) {
+double flip(const BytePicture& reference, const BytePicture& test) {
   DS_ASSERT(reference.width == test.width && reference.height == test.height);
   const Channels r = planes_of(reference);
   const Channels t = planes_of(test);

@@ -16,6 +16,6 @@ inline constexpr double k_flip_pixels_per_degree = 0.7 * 3840 / 0.7 * 3.14159265
 /// (section 4.1), edge and point detection (4.2), their combination (4.3). Not the later HDR
 /// extension. Not symmetric in the last digits only; `reference` comes first by custom. The
 /// pictures are of one size; values are taken as sRGB.
-double flip(const Picture& reference, const Picture& test);
+double flip(const BytePicture& reference, const BytePicture& test);
 
 }  // namespace ds

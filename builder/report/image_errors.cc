@@ -83,7 +83,7 @@ LinearErrors linear_errors(const Film& film, const Reference& reference) {
   return errors;
 }
 
-double picture_mean_square(const Picture& picture, const Picture& a, const Picture& b) {
+double picture_mean_square(const BytePicture& picture, const BytePicture& a, const BytePicture& b) {
   DS_ASSERT(!picture.pixels.empty());
   DS_ASSERT(picture.pixels.size() == a.pixels.size() && a.pixels.size() == b.pixels.size());
   double sum = 0;

@@ -37,7 +37,7 @@ LinearErrors linear_errors(const Film& film, const Reference& reference);
 
 /// Mean square error of developed pictures, in (units of 8 bit)^2 over pixels and channels, by two
 /// references as above.
-double picture_mean_square(const Picture& picture, const Picture& a, const Picture& b);
+double picture_mean_square(const BytePicture& picture, const BytePicture& a, const BytePicture& b);
 /// Peak signal-to-noise ratio in dB: 10 log10(255^2 / mean_square); nothing where mean_square <= 0:
 /// the pictures cannot be told apart.
 std::optional<double> psnr_db(double mean_square);

@@ -25,7 +25,7 @@ constexpr int k_most_plain_samples = 256;
 /// Both halves and their mean, developed.
 struct DevelopedReference {
   Reference films;
-  Picture a, b, mean;
+  BytePicture a, b, mean;
 };
 
 Film mean_film(const Film& a, const Film& b) {
@@ -106,7 +106,7 @@ class Ladder {
       samples.mean_square.push_back(errors.mean_square);
       samples.rel_mse.push_back(errors.rel_mse);
       samples.rel_mse_trimmed.push_back(errors.rel_mse_trimmed);
-      const Picture picture = develop(film, tone_map_);
+      const BytePicture picture = develop(film, tone_map_);
       samples.picture_mean_square.push_back(picture_mean_square(picture, reference.a, reference.b));
       if (const auto similarity = ssim(reference.mean, picture))
         samples.ssim.push_back(*similarity);

@@ -15,7 +15,7 @@ constexpr double k_sigma = 1.5;
 constexpr double k_c1 = 0.01 * 255 * 0.01 * 255;
 constexpr double k_c2 = 0.03 * 255 * 0.03 * 255;
 
-Channel luma(const Picture& picture) {
+Channel luma(const BytePicture& picture) {
   DS_ASSERT(picture.channels == 3);
   Channel channel(picture.width, picture.height);
   const std::uint8_t* p = picture.pixels.data();
@@ -35,7 +35,7 @@ Channel product(const Channel& a, const Channel& b) {
 
 }  // namespace
 
-std::optional<double> ssim(const Picture& x, const Picture& y) {
+std::optional<double> ssim(const BytePicture& x, const BytePicture& y) {
   DS_ASSERT(x.width == y.width && x.height == y.height);
   if (x.width <= 2 * k_radius || x.height <= 2 * k_radius) return std::nullopt;
   const Taps taps = normalised(gaussian_taps(k_sigma, k_radius));

@@ -119,12 +119,12 @@ std::array<double, 3> ToneCurve::at(const std::array<float, 3>& rgb) const {
   return developed;
 }
 
-Picture develop(const Film& film, const ToneMap& tone_map) {
+BytePicture develop(const Film& film, const ToneMap& tone_map) {
   DS_ASSERT(tone_map.gamma > 0);
   const std::size_t count = pixel_count(film);
   const double scale = tone_map_scale(film, tone_map);
   const std::array<double, 255> starts = level_starts(double{tone_map.gamma});
-  Picture picture{film.width, film.height, 3, std::vector<std::uint8_t>(count * 3)};
+  BytePicture picture{film.width, film.height, 3, std::vector<std::uint8_t>(count * 3)};
   for (std::size_t i = 0; i < count; ++i) {
     const float* rgb = film.rgb.data() + i * 3;
     const double factor = pixel_factor(rgb, tone_map, scale);

@@ -14,7 +14,7 @@
 namespace ds {
 
 /// 8-bit picture, row 0 at the top. `channels` is 1 or 3.
-struct Picture {
+struct BytePicture {
   int width = 0, height = 0, channels = 3;
   std::vector<std::uint8_t> pixels;
 };
@@ -46,7 +46,7 @@ double tone_map_scale(const Film& film, const ToneMap& tone_map);
 /// y = Y * s / prescale (burn <= 0: 1e5 stands for 1 / burn^2). In double and exact, where LuxCore
 /// looks gamma up in a table of 4096 steps. The same bits on every machine: no libm transcendental.
 /// NaN gives 0. gamma > 0.
-Picture develop(const Film& film, const ToneMap& tone_map);
+BytePicture develop(const Film& film, const ToneMap& tone_map);
 /// Pixels of which `develop` takes light away in every channel: the tone map gives each over 1.05.
 /// At 1, as of a plain white sky, nothing is lost.
 std::uint64_t clipped_pixels(const Film& film, const ToneMap& tone_map);
@@ -69,7 +69,7 @@ class ToneCurve {
 /// Encoded files with fixed settings; no timestamp, host or version stands in them. PNG: 8 or 16
 /// bit, zlib level 6, Paeth filter. EXR: float or half, ZIP. The same library versions give the same
 /// bytes.
-std::vector<std::byte> encode_png(const Picture& picture);
+std::vector<std::byte> encode_png(const BytePicture& picture);
 std::vector<std::byte> encode_png(const DeepPicture& picture);
 std::vector<std::byte> encode_exr(const FloatPicture& picture, bool as_half);
 /// A film as EXR: float32 R, G, B, ZIP; exact, with the count of rejected samples as an attribute.

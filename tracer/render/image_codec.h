@@ -18,7 +18,7 @@ struct ImageCodec {
   /// `format` is what check_image_claims found.
   DecodedImage (*decode_bytes)(std::span<const std::byte> bytes, const std::string& format,
                                const std::string& name, Halves halves);
-  std::vector<std::byte> (*encode_png)(const Picture& picture);
+  std::vector<std::byte> (*encode_png)(const BytePicture& picture);
   std::vector<std::byte> (*encode_deep_png)(const DeepPicture& picture);
   std::vector<std::byte> (*encode_exr)(const FloatPicture& picture, bool as_half);
   std::vector<std::byte> (*encode_film_exr)(const Film& film);

@@ -208,7 +208,7 @@ std::vector<std::byte> png_of(int width, int height, int channels, OIIO::TypeDes
   return encode("png", spec, pixels.data());
 }
 
-std::vector<std::byte> png(const Picture& picture) {
+std::vector<std::byte> png(const BytePicture& picture) {
   return png_of(picture.width, picture.height, picture.channels, OIIO::TypeDesc::UINT8,
                 std::as_bytes(std::span(picture.pixels)));
 }

@@ -55,7 +55,7 @@ DecodedImage decode_image_bytes(std::span<const std::byte> bytes, const std::str
   return codec().decode_bytes(bytes, format, name, halves);
 }
 
-std::vector<std::byte> encode_png(const Picture& picture) {
+std::vector<std::byte> encode_png(const BytePicture& picture) {
   return codec().encode_png(picture);
 }
 

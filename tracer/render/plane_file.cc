@@ -114,7 +114,7 @@ std::vector<std::byte> encode_plane(const Plane& plane, PlaneEncoding encoding) 
     return encode_exr(with_channels(plane), encoding == PlaneEncoding::half);
   if (encoding == PlaneEncoding::png16) return encode_png(whole_numbers(plane, 65535));
   const DeepPicture deep = whole_numbers(plane, 255);
-  Picture picture{deep.width, deep.height, deep.channels, {}};
+  BytePicture picture{deep.width, deep.height, deep.channels, {}};
   for (const std::uint16_t value : deep.pixels)
     picture.pixels.push_back(static_cast<std::uint8_t>(value));
   return encode_png(picture);

@@ -17,7 +17,7 @@ Film constant_film(int side, float value) {
   return noisy_film(side, value, 0, 1);
 }
 
-Picture constant_picture(int side, std::uint8_t value) {
+BytePicture constant_picture(int side, std::uint8_t value) {
   return {side, side, 3,
           std::vector<std::uint8_t>(static_cast<std::size_t>(side * side * 3), value)};
 }
@@ -64,8 +64,8 @@ TEST(LinearErrors, BiasIsSeenThroughNoise) {
 }
 
 TEST(PictureErrors, AreThoseOfScikitImage) {
-  const Picture reference = wavy_picture();
-  const Picture test = spoilt_picture();
+  const BytePicture reference = wavy_picture();
+  const BytePicture test = spoilt_picture();
   const double mean_square = picture_mean_square(test, reference, reference);
   EXPECT_NEAR(mean_square, 849.1253472222222, 1e-9);
   // skimage.metrics 0.26: peak_signal_noise_ratio; structural_similarity of luma with
@@ -75,7 +75,7 @@ TEST(PictureErrors, AreThoseOfScikitImage) {
 }
 
 TEST(PictureErrors, OfEqualPictures) {
-  const Picture picture = wavy_picture();
+  const BytePicture picture = wavy_picture();
   EXPECT_FALSE(psnr_db(picture_mean_square(picture, picture, picture)).has_value());
   EXPECT_NEAR(ssim(picture, picture).value(), 1, 1e-12);
   EXPECT_EQ(flip(picture, picture), 0);

@@ -18,8 +18,8 @@ inline int wave(int v, int period) {
 
 /// Two pictures of whole numbers, so that the oracles in Python have the same ones:
 ///   y, x = np.mgrid[0:40, 0:48]; reference as below; test as below.
-inline Picture wavy_picture() {
-  Picture picture{48, 40, 3, {}};
+inline BytePicture wavy_picture() {
+  BytePicture picture{48, 40, 3, {}};
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x)
       for (const int value :
@@ -28,8 +28,8 @@ inline Picture wavy_picture() {
   return picture;
 }
 
-inline Picture spoilt_picture() {
-  Picture picture = wavy_picture();
+inline BytePicture spoilt_picture() {
+  BytePicture picture = wavy_picture();
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x) {
       std::uint8_t* p = &picture.pixels[static_cast<std::size_t>((y * picture.width + x) * 3)];

@@ -88,7 +88,7 @@ TEST(Develop, WhatIsOutsideTheRangeIsClamped) {
 
 TEST(Develop, ChannelsAndRowsStayInPlace) {
   Film film{2, 2, {1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1}, 0};
-  const Picture picture = develop(film, tone_map(ToneMap::Kind::linear));
+  const BytePicture picture = develop(film, tone_map(ToneMap::Kind::linear));
   EXPECT_EQ(picture.width, 2);
   EXPECT_EQ(picture.height, 2);
   EXPECT_EQ(picture.channels, 3);
@@ -126,7 +126,7 @@ TEST(Develop, ReinhardIsTheFormula) {
   const Film film = grey_film({0.2f, 0.8f});
   const double scale = 0.1 / std::sqrt(0.2 * 0.8);  // the mean of logarithms is the geometric mean
   EXPECT_NEAR(tone_map_scale(film, map) / scale, 1.0, 1e-7);
-  const Picture picture = develop(film, map);
+  const BytePicture picture = develop(film, map);
   for (std::size_t i = 0; i < 2; ++i) {
     const double value = double{film.rgb[i * 3]}, y = value * scale / 2;
     const double mapped = value * scale * double{map.postscale} * (1 + y / (3.75 * 3.75)) / (1 + y);
@@ -147,7 +147,7 @@ FloatPicture depths(int width, int height, std::vector<float> values) {
 
 TEST(Encoding, TheSameBytesEachTimeAndFromEachThread) {
   const Film film = gradient_film(97, 61);
-  const Picture picture = develop(film, tone_map(ToneMap::Kind::linear));
+  const BytePicture picture = develop(film, tone_map(ToneMap::Kind::linear));
   const FloatPicture geometry = depths(97, 61, std::vector<float>(97 * 61, 0.25f));
   const auto png = encode_png(picture), exr = encode_film_exr(film),
              depth = encode_exr(geometry, false);
@@ -169,8 +169,8 @@ TEST(Encoding, TheSameBytesEachTimeAndFromEachThread) {
 
 TEST(Encoding, APngHoldsPixelsAndNothingElse) {
   for (const int channels : {1, 3}) {
-    const Picture picture{3, 2, channels,
-                          std::vector<std::uint8_t>(static_cast<std::size_t>(6 * channels), 77)};
+    const BytePicture picture{
+        3, 2, channels, std::vector<std::uint8_t>(static_cast<std::size_t>(6 * channels), 77)};
     const std::string png = as_text(encode_png(picture));
     std::vector<std::string> chunks;
     for (std::size_t at = 8; at + 8 <= png.size();) {
@@ -225,7 +225,7 @@ TEST(Encoding, WhatIsNoFilmIsAnAssetError) {
   };
   const std::vector<std::byte> film = encode_film_exr(gradient_film(64, 64));
   EXPECT_THAT(message({}), HasSubstr("store/film: cannot be read as an image: wanted EXR"));
-  EXPECT_THAT(message(encode_png(Picture{1, 1, 3, {1, 2, 3}})),
+  EXPECT_THAT(message(encode_png(BytePicture{1, 1, 3, {1, 2, 3}})),
               HasSubstr("store/film: no film of ours"));
   EXPECT_THAT(message(encode_exr(depths(1, 1, {1}), false)), HasSubstr("found 1 of float"));
   for (const std::size_t kept :
@@ -237,7 +237,7 @@ TEST(Encoding, WhatIsNoFilmIsAnAssetError) {
 }
 
 TEST(PixelHash, IsTheHashOfHeaderAndPixels) {
-  const Picture picture{2, 1, 3, {1, 2, 3, 4, 5, 250}};
+  const BytePicture picture{2, 1, 3, {1, 2, 3, 4, 5, 250}};
   EXPECT_EQ(pixel_hash(encode_png(picture), "p"),
             hash_text(std::string("2x1x3 uint8\n\1\2\3\4\5\372", 18)));
   const FloatPicture geometry = depths(2, 1, {1.0f, -2.0f});
@@ -246,8 +246,8 @@ TEST(PixelHash, IsTheHashOfHeaderAndPixels) {
 }
 
 TEST(PixelHash, SeesEveryPixelAndTheShape) {
-  const Picture picture{2, 3, 1, {1, 2, 3, 4, 5, 6}};
-  Picture changed = picture, turned = picture;
+  const BytePicture picture{2, 3, 1, {1, 2, 3, 4, 5, 6}};
+  BytePicture changed = picture, turned = picture;
   changed.pixels[5] ^= 1;
   std::swap(turned.width, turned.height);
   const Hash128 hash = pixel_hash(encode_png(picture), "p");
@@ -257,7 +257,7 @@ TEST(PixelHash, SeesEveryPixelAndTheShape) {
 
 TEST(PixelHash, ReadsFilesAndNamesThemInErrors) {
   const TemporaryFolder folder;
-  const Picture picture{2, 3, 1, {1, 2, 3, 4, 5, 6}};
+  const BytePicture picture{2, 3, 1, {1, 2, 3, 4, 5, 6}};
   write_file_atomic(folder.path() / "a.png", encode_png(picture));
   EXPECT_EQ(pixel_hash(folder.path() / "a.png"), pixel_hash(encode_png(picture), "p"));
   EXPECT_THROW(pixel_hash(folder.path() / "b.png"), Error);
@@ -277,7 +277,7 @@ TEST(ToneCurve, IsWhatDevelopRounds) {
     for (const float gamma : {1.0f, 1.8f, 2.2f}) {
       const ToneMap map = tone_map(kind, gamma);
       const ToneCurve curve(map, tone_map_scale(film, map));
-      const Picture picture = develop(film, map);
+      const BytePicture picture = develop(film, map);
       for (std::size_t i = 0; i < film.rgb.size(); i += 3) {
         const auto values = curve.at({film.rgb[i], film.rgb[i + 1], film.rgb[i + 2]});
         for (std::size_t c = 0; c < 3; ++c)

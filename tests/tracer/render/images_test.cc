@@ -296,7 +296,7 @@ TEST(PixelHash, DoesNotSeeTheCompressionLevel) {
   };
   EXPECT_NE(encoded(1), encoded(9));
   EXPECT_EQ(pixel_hash(encoded(1), "a"), pixel_hash(encoded(9), "b"));
-  Picture picture{64, 48, 3, {}};
+  BytePicture picture{64, 48, 3, {}};
   picture.pixels.assign(samples.begin(), samples.end());
   EXPECT_EQ(pixel_hash(encode_png(picture), "c"), pixel_hash(encoded(9), "b"));
 }
