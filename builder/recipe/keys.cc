@@ -196,7 +196,7 @@ constexpr std::array k_keys = {
             "engine.error != false",
             "Which pixels engine.error is of: all, or those where the mask shows the model; others "
             "then get 16 samples"},
-    KeySpec{"engine.keep_film", manifest, boolean, "", "false", k_any, "", "",
+    KeySpec{"engine.keep_sums", manifest, boolean, "", "false", k_any, "", "",
             "Keep each film's sums in the store, 176 bytes a pixel: more spp, or a smaller error, "
             "then traces the missing samples only"},
     KeySpec{"engine.depth_total", film, integer, "", "6", between(1, 255), "", "",

@@ -170,7 +170,7 @@ Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrid
   recipe.engine = read_engine(settings);
   recipe.outputs = read_outputs(settings);
   recipe.rejected_limit = settings.number("engine.rejected_limit");
-  recipe.keep_sums = settings.boolean("engine.keep_film");
+  recipe.keep_sums = settings.boolean("engine.keep_sums");
   recipe.keep_film = settings.boolean("outputs.keep_film");
   diagnostics.throw_if_any();
   recipe.settings = canonical_settings(settings, recipe);

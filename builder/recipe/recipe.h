@@ -96,7 +96,7 @@ struct Recipe {
   EngineSettings engine;
   OutputSettings outputs;
   bool keep_film = true;          ///< outputs.keep_film: the radiance, to develop it again
-  bool keep_sums = false;         ///< engine.keep_film: the sums, to go on from them
+  bool keep_sums = false;         ///< engine.keep_sums: the sums, to go on from them
   double rejected_limit = 0.001;  ///< share of a picture's samples
   /// Every key that has an effect and a value, "engine.spp" -> "64", as canonical_recipe writes
   /// them.

@@ -9,7 +9,7 @@ def setting(name, value):
     return "--set", f"engine.{name}={value}"
 
 
-KEEP = setting("keep_film", "true")
+KEEP = setting("keep_sums", "true")
 
 
 class FilmTest(TinyCase):

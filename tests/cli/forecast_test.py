@@ -68,14 +68,14 @@ class ForecastTest(TinyCase):
         # Every image of the tiny dataset is near another that was probed; equal files are stored once.
         self.assertAlmostEqual(told["bytes"]["value"] / self.stored(), 1, delta=0.25)
         before = self.stored()
-        kept = ("--set", "engine.spp=17", "--set", "engine.keep_film=true")
+        kept = ("--set", "engine.spp=17", "--set", "engine.keep_sums=true")
         told = self.forecast("--time", *kept)
         self.assertGreater(told["bytes_by_kind"]["film_sums"], IMAGES * SAMPLES * 150)
         self.build(*kept)
         self.assertAlmostEqual(told["bytes"]["value"] / (self.stored() - before), 1, delta=0.1)
 
     def test_kept_films_take_the_missing_samples_only(self):
-        keep = ("--set", "engine.keep_film=true")
+        keep = ("--set", "engine.keep_sums=true")
         whole = self.forecast("--time", *keep, "--set", "engine.spp=65")
         self.build(*keep, "--set", "engine.spp=64")
         more = self.forecast("--time", *keep, "--set", "engine.spp=65")

@@ -144,7 +144,7 @@ std::vector<Flip> Moving::flips() const {
       {"engine.error", "false", "0.5"},
       {"engine.max_spp", "64", "128", {k_target}},
       {"engine.error_region", "\"image\"", "\"model\"", {k_target}},
-      {"engine.keep_film", "false", "true"},
+      {"engine.keep_sums", "false", "true"},
       {"engine.depth_total", "6", "7"},
       {"engine.depth_diffuse", "4", "5"},
       {"engine.depth_glossy", "4", "5"},

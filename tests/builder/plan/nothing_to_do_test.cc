@@ -96,7 +96,7 @@ TEST_F(NothingToDo, CostsNothingForEachImageOfAnErrorTarget) {
 }
 
 TEST_F(NothingToDo, CostsNothingForEachImageOfAKeptFilm) {
-  expect_the_same_of_more({"engine.keep_film=true"});
+  expect_the_same_of_more({"engine.keep_sums=true"});
 }
 
 TEST_F(NothingToDo, CostsNothingForEachImageThatFits) {

@@ -337,7 +337,7 @@ TEST_F(CalibrationTest, WithoutAPictureThereAreNoSamples) {
 }
 
 TEST_F(CalibrationTest, KeptSumsAreForecast) {
-  const std::vector<std::string> keep{"engine.keep_film=true", "engine.spp=1024"};
+  const std::vector<std::string> keep{"engine.keep_sums=true", "engine.spp=1024"};
   EXPECT_GT(calibrated({}).measured, 0U);
   const Calibration c = calibrated(keep);
   EXPECT_GT(c.measured, 0U) << "what was kept knows nothing of the sums";
