@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracer/scene/sdl_reader.h"
+#include "tracer/scene/sdl_node.h"
 
 #include <algorithm>
 #include <charconv>

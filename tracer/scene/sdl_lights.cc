@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/luminance.h"
 #include "tracer/scene/sdl_math.h"
-#include "tracer/scene/sdl_reader.h"
+#include "tracer/scene/sdl_node.h"
 #include "tracer/scene/sky_model.h"
 #include "tracer/scene/spectrum.h"
 #include "tracer/scene/sun_model.h"

@@ -3,7 +3,7 @@
 #include "tracer/scene/mesh_formats.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/sdl_math.h"
-#include "tracer/scene/sdl_reader.h"
+#include "tracer/scene/sdl_node.h"
 
 #include <algorithm>
 #include <cmath>

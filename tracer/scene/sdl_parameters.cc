@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -157,6 +159,34 @@ std::string sdl_reference() {
     text.pop_back();  // one line break at the end
   }
   return text;
+}
+
+std::string physical_text(const InputLimit& limit) {
+  const std::string range = limit.physical.text();
+  return range.empty() ? "" : fmt::format("a share of light, {}; what is not is warned of", range);
+}
+
+std::vector<SdlParameter> header_parameters(const NodeType& type) {
+  std::vector<SdlParameter> parameters;
+  for (const InputType& input : type.inputs)
+    parameters.push_back({std::string(input.name),
+                          input.width == 1 ? SdlType::scalar_input : SdlType::color_input,
+                          fmt::format("{}", input.default_value),
+                          physical_text(limit_of(input.name)), limit_of(input.name).range});
+  for (const NumberType& number : type.numbers) {
+    const InputLimit limit = limit_of(number.name);
+    parameters.push_back({std::string(number.name), limit.flag ? SdlType::flag : SdlType::number,
+                          fmt::format("{}", number.default_value), "",
+                          limit.flag ? NumberRange{} : limit.range});
+  }
+  return parameters;
+}
+
+std::vector<SdlParameter> concatenated(std::vector<std::vector<SdlParameter>> lists) {
+  std::vector<SdlParameter> all;
+  for (std::vector<SdlParameter>& list : lists)
+    std::move(list.begin(), list.end(), std::back_inserter(all));
+  return all;
 }
 
 }  // namespace ds

@@ -3,6 +3,7 @@
 
 #include "tracer/base/number_range.h"
 #include "tracer/scene/sdl_names.h"
+#include "tracer/scene/type_tables.h"
 
 #include <span>
 #include <string>
@@ -80,5 +81,12 @@ std::string wanted_text(const SdlParameter& parameter);
 
 /// assets/SDL.md: every section, type and property as Markdown.
 std::string sdl_reference();
+
+/// What a reference says of an input's physical range; "" where it has none.
+std::string physical_text(const InputLimit& limit);
+/// The properties of a type of material or texture that stand in its kernel header.
+std::vector<SdlParameter> header_parameters(const NodeType& type);
+/// The lists, one behind the other.
+std::vector<SdlParameter> concatenated(std::vector<std::vector<SdlParameter>> lists);
 
 }  // namespace ds

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tracer/scene/sdl_reader.h"
+#include "tracer/scene/sdl_node.h"
 
 #include <optional>
 

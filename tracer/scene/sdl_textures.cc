@@ -2,8 +2,8 @@
 #include "tracer/kernels/layout.h"
 #include "tracer/scene/fresnel_presets.h"
 #include "tracer/scene/sdl_math.h"
+#include "tracer/scene/sdl_node.h"
 #include "tracer/scene/sdl_physical.h"
-#include "tracer/scene/sdl_reader.h"
 
 #include <algorithm>
 #include <array>

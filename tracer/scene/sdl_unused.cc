@@ -2,7 +2,7 @@
 // What is in a file and nobody took, and what is missed in it: each said once, with what was most
 // likely meant.
 #include "tracer/base/nearest.h"
-#include "tracer/scene/sdl_reader.h"
+#include "tracer/scene/sdl_node.h"
 
 #include <algorithm>
 #include <iterator>

@@ -1,68 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracer/scene/sdl_reader.h"
+#include "tracer/scene/sdl_node.h"
 
 #include "tracer/base/luminance.h"
 #include "tracer/base/nearest.h"
 #include "tracer/scene/sdl_math.h"
+#include "tracer/scene/sdl_values.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <iterator>
-#include <limits>
-#include <span>
 #include <system_error>
 
 namespace ds {
-namespace {
-
-/// The words of all values: LuxCore reads "0.5 0.5 0.5" in quotes as three numbers too.
-std::vector<std::string> words_of(const Property& property) {
-  std::vector<std::string> words;
-  for (const std::string& value : property.values)
-    for (std::size_t start = value.find_first_not_of(" \t"); start != std::string::npos;) {
-      const std::size_t end = value.find_first_of(" \t", start);
-      words.push_back(value.substr(start, end - start));
-      start = end == std::string::npos ? end : value.find_first_not_of(" \t", end);
-    }
-  return words;
-}
-
-std::string joined(const Property& property) {
-  return fmt::format("{}", fmt::join(property.values, " "));
-}
-
-/// Takes a colour space prefix off the words and returns the exponent that makes the numbers
-/// linear; nothing for one that is not supported.
-std::optional<double> take_color_space(std::vector<std::string>& words) {
-  if (words.empty()) return 1.0;
-  if (words[0] == "nop") {
-    words.erase(words.begin());
-    return 1.0;
-  }
-  if (words[0] == "luxcore" && words.size() > 1) {
-    const std::optional<double> gamma = parse_sdl_number(words[1]);
-    words.erase(words.begin(), words.begin() + 2);
-    if (gamma && *gamma > 0) return gamma;
-    return std::nullopt;
-  }
-  return words[0] == "opencolorio" ? std::nullopt : std::optional(1.0);
-}
-
-double linear(double value, double gamma) {
-  return gamma == 1 || value < 0 ? value : portable::pow(value, gamma);
-}
-
-}  // namespace
-
-std::optional<double> parse_sdl_number(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool is_float = std::fabs(value) <= double{std::numeric_limits<float>::max()};
-  if (error != std::errc() || end != text.data() + text.size() || !is_float) return std::nullopt;
-  return value;
-}
 
 SdlNode::SdlNode(SdlReader& reader, SdlKind kind, std::string name)
     : reader_(&reader),
@@ -334,34 +282,6 @@ void SdlNode::read_row(const NodeType& row, std::vector<TextureRef>& inputs,
     values.push_back(parameter(type.name).type == SdlType::flag
                          ? (flag(type.name) ? 1.0f : 0.0f)
                          : static_cast<float>(number(type.name)));
-}
-
-std::string physical_text(const InputLimit& limit) {
-  const std::string range = limit.physical.text();
-  return range.empty() ? "" : fmt::format("a share of light, {}; what is not is warned of", range);
-}
-
-std::vector<SdlParameter> header_parameters(const NodeType& type) {
-  std::vector<SdlParameter> parameters;
-  for (const InputType& input : type.inputs)
-    parameters.push_back({std::string(input.name),
-                          input.width == 1 ? SdlType::scalar_input : SdlType::color_input,
-                          fmt::format("{}", input.default_value),
-                          physical_text(limit_of(input.name)), limit_of(input.name).range});
-  for (const NumberType& number : type.numbers) {
-    const InputLimit limit = limit_of(number.name);
-    parameters.push_back({std::string(number.name), limit.flag ? SdlType::flag : SdlType::number,
-                          fmt::format("{}", number.default_value), "",
-                          limit.flag ? NumberRange{} : limit.range});
-  }
-  return parameters;
-}
-
-std::vector<SdlParameter> concatenated(std::vector<std::vector<SdlParameter>> lists) {
-  std::vector<SdlParameter> all;
-  for (std::vector<SdlParameter>& list : lists)
-    std::move(list.begin(), list.end(), std::back_inserter(all));
-  return all;
 }
 
 }  // namespace ds
