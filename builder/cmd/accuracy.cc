@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "builder/report/accuracy.h"
+#include "builder/measure/accuracy.h"
 
 #include "builder/cmd/forecast_text.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/stop_signal.h"
 #include "builder/cmd/verbs.h"
-#include "builder/report/csv.h"
-#include "builder/report/page.h"
+#include "builder/page/csv.h"
+#include "builder/page/page.h"
 #include "builder/store/input_folders.h"
 #include "tracer/base/files.h"
 #include "tracer/base/streams.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "builder/report/forecast.h"
+#include "builder/forecast/forecast.h"
 
 #include <nlohmann/json.hpp>
 

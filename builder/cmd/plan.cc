@@ -6,7 +6,7 @@
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/stop_signal.h"
 #include "builder/cmd/verbs.h"
-#include "builder/report/budget.h"
+#include "builder/forecast/budget.h"
 #include "tracer/base/process_folder.h"
 #include "tracer/base/streams.h"
 #include "tracer/device/program_cache.h"
