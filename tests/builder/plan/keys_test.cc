@@ -107,7 +107,7 @@ TEST_F(KeysTest, TheKeptKeyLeavesOutWhenToStop) {
 }
 
 TEST_F(KeysTest, EachSettingMovesWhatItCanChangeAndNothingElse) {
-  const fs::path other_model = recipe_.models[1], other_material = recipe_.materials[1];
+  const fs::path other_model = recipe_.models[1].file, other_material = recipe_.materials[1];
   struct Case {
     const char* what;
     std::function<void()> change;

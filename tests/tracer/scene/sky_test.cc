@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/tracer/scene/sdl_files_for_tests.h"
+#include "tracer/base/luminance.h"
 #include "tracer/scene/sdl_math.h"
 #include "tracer/scene/sky_model.h"
 
@@ -59,7 +60,7 @@ TEST(Sky, HorizontalIrradianceAgreesWithLuxCore) {
     for (int band = 0; band < 3; ++band)
       EXPECT_NEAR(found[band] / wanted.measured[band], 1, 0.06)
           << wanted.elevation_deg << " degrees, band " << band;
-    EXPECT_NEAR(portable::luminance(found) / portable::luminance(wanted.measured), 1, 0.06);
+    EXPECT_NEAR(luxcore_luminance(found) / luxcore_luminance(wanted.measured), 1, 0.06);
   }
 }
 
@@ -89,16 +90,16 @@ double circle_mean(Value value) {
 TEST(Sky, ZenithToHorizonRatioAgreesWithLuxCore) {
   for (const Ratio& wanted : k_ratios) {
     const SkyModel sky(sky_at(wanted.elevation_deg));
-    const double zenith = portable::luminance(sky.radiance({0, 0, 1}));
+    const double zenith = luxcore_luminance(sky.radiance({0, 0, 1}));
     const double horizon = circle_mean([&](std::size_t i) {
-      return portable::luminance(sky.radiance(direction(89.5, k_azimuths[i])));
+      return luxcore_luminance(sky.radiance(direction(89.5, k_azimuths[i])));
     });
     const double wanted_horizon = circle_mean([&](std::size_t i) { return wanted.horizon[i]; });
     EXPECT_NEAR((zenith / horizon) / (wanted.zenith / wanted_horizon), 1, 0.12)
         << wanted.elevation_deg;
     for (std::size_t i = 0; i < 9; ++i)
       EXPECT_NEAR(
-          portable::luminance(sky.radiance(direction(89.5, k_azimuths[i]))) / wanted.horizon[i], 1,
+          luxcore_luminance(sky.radiance(direction(89.5, k_azimuths[i]))) / wanted.horizon[i], 1,
           0.3)
           << wanted.elevation_deg << " degrees, azimuth " << k_azimuths[i];
   }
@@ -121,9 +122,9 @@ TEST(Sky, IsPositiveAndFiniteEverywhere) {
 
 TEST(Sky, IsBrighterRoundTheSunAndAlikeOnBothSides) {
   const SkyModel sky(sky_at(45));
-  const double near_sun = portable::luminance(sky.radiance(direction(45, 3)));
-  EXPECT_GT(near_sun, 3 * portable::luminance(sky.radiance(direction(45, 180))));
-  EXPECT_NEAR(near_sun, portable::luminance(sky.radiance(direction(45, -3))), 1e-6 * near_sun);
+  const double near_sun = luxcore_luminance(sky.radiance(direction(45, 3)));
+  EXPECT_GT(near_sun, 3 * luxcore_luminance(sky.radiance(direction(45, 180))));
+  EXPECT_NEAR(near_sun, luxcore_luminance(sky.radiance(direction(45, -3))), 1e-6 * near_sun);
 }
 
 TEST(Sky, GroundAlbedoBrightensTheSkyAsInLuxCore) {

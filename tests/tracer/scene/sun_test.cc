@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/tracer/scene/sdl_files_for_tests.h"
+#include "tracer/base/luminance.h"
 #include "tracer/scene/sdl_math.h"
 #include "tracer/scene/spectrum.h"
 #include "tracer/scene/sun_model.h"
@@ -87,7 +88,7 @@ TEST(Sun, IrradianceDoesNotDependOnTheDiscsSize) {
 
 TEST(Spectrum, AFlatSpectrumIsWhiteE) {
   const Vec3d rgb = spectrum_to_rgb([](double) { return 1.0; });
-  EXPECT_NEAR(portable::luminance(rgb), 1, 1e-3);
+  EXPECT_NEAR(luxcore_luminance(rgb), 1, 1e-3);
   // Linear Rec.709 of the equal-energy white, xy = 1/3, from the matrix of ITU-R BT.709.
   EXPECT_NEAR(rgb.x, 1.2048, 0.01);
   EXPECT_NEAR(rgb.y, 0.9483, 0.01);
