@@ -46,7 +46,7 @@ void add_lights(Choices& choices, const Scene& scene, const std::vector<bool>& w
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
     const std::string name =
-        light.name.empty() ? std::string(light_kind_name(light.kind)) : light.name;
+        light.name.empty() ? std::string(type_of(light).kernel_prefix) : light.name;
     if (shines(light))
       add(choices, "light " + name, [i](Subject& s) { s.scene.lights[i].color = {}; });
   }

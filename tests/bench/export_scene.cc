@@ -127,31 +127,16 @@ json export_object(const Scene& scene, std::size_t index, const std::filesystem:
           {"triangles", object.mesh.triangles.size()}};
 }
 
-const char* kind_name(LightKind kind) {
-  switch (kind) {
-    case LightKind::point:
-      return "point";
-    case LightKind::spot:
-      return "spot";
-    case LightKind::sun:
-      return "sun";
-    case LightKind::constant_infinite:
-      return "constant_infinite";
-    case LightKind::infinite:
-      return "infinite";
-  }
-  fail(ErrorKind::asset, "light kind {} is unknown", static_cast<int>(kind));
-}
-
 json export_light(const Scene& scene, const Light& light, const std::filesystem::path& folder) {
   json entry = {{"name", light.name},
-                {"kind", kind_name(light.kind)},
+                {"kind", type_of(light).kernel_prefix},
                 {"color", numbers(light.color)},
-                {"position", numbers(light.position)},
-                {"direction", numbers(light.direction)},
-                {"cos_total", light.cos_total},
-                {"cos_falloff", light.cos_falloff},
                 {"light_to_world", light.light_to_world.m}};
+  for (const LightInput& input : type_of(light).host.inputs)
+    if (input.value == LightValue::number)
+      entry[std::string(input.name)] = *light_value(light, input.name);
+    else if (input.value != LightValue::color)
+      entry[std::string(input.name)] = numbers(light_vector(light, input.name));
   if (light.image < 0) return entry;
   const Image& image = scene.images[static_cast<std::size_t>(light.image)];
   const std::string file = fmt::format("image-{}.f32", light.image);

@@ -63,7 +63,7 @@ def lat_long(mi, light: dict, folder: pathlib.Path) -> dict:
 
 def emitter(mi, light: dict, folder: pathlib.Path) -> dict:
     kind, color = light["kind"], np.array(light["color"])
-    position, direction = np.array(light["position"]), np.array(light["direction"])
+    position, direction = (np.array(light.get(name, [0, 0, 0])) for name in ("position", "direction"))
     if kind == "point":
         return {"type": "point", "position": position.tolist(), "intensity": rgb(color)}
     if kind == "spot":

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/gpu/cases.h"
 
-#include "tracer/base/error.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
+
+#include <fmt/format.h>
 
 #include <string>
 #include <utility>
@@ -66,28 +67,6 @@ Picture of_texture(const NodeType& type) {
   add_object(scene, panel, material, k_model_object_id);
   scene.lights.push_back(point_light({-1, -1, 2}, {3, 2.5f, 2}));
   return of_scene(fmt::format("texture-{}", type.kernel_prefix), scene);
-}
-
-void add_light(Scene& scene, std::string_view prefix) {
-  if (prefix == "point") {
-    scene.lights.push_back(point_light({-1, -1, 2}, {3, 2.5f, 2}));
-  } else if (prefix == "spot") {
-    scene.lights.push_back(spot_light({1, -1, 2}, {-0.45f, 0.4f, -0.8f}, 30, 20, {8, 9, 10}));
-  } else if (prefix == "sun") {
-    scene.lights.push_back(sun_light({0.3f, -0.5f, 0.8f}, 1.0, {900, 800, 700}));
-  } else if (prefix == "constant_infinite") {
-    scene.lights.push_back(constant_light({0.3f, 0.4f, 0.5f}));
-  } else if (prefix == "infinite") {
-    scene.images.push_back(small_sky());
-    scene.lights.push_back(image_light(0));
-  } else if (prefix == "mesh") {
-    const int emitter = add_matte(scene, {0, 0, 0});
-    scene.materials.back().emits = true;
-    scene.materials.back().emission.constant = {4, 3, 2};
-    add_object(scene, quad({0, -0.5f, 1.2f}, {0.3f, 0, 0}, {0, -0.2f, 0}), emitter);
-  } else {
-    fail(ErrorKind::usage, "light {} has no scene in tests/gpu/cases.cc", prefix);
-  }
 }
 
 Picture of_light(const LightType& type) {

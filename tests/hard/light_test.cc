@@ -243,8 +243,8 @@ Light low_sun(double elevation_deg) {
 /// Radiance that the part of the disc above the ground sends up from it, by a fine sum over rows of
 /// the disc; `value` is the BSDF times the cosine at the sine of a row's height.
 double from_what_is_above(const Light& sun, const std::function<double(double)>& value) {
-  const double radius = std::acos(double{sun.cos_total});
-  const double height = std::asin(double{sun.direction.z});
+  const double radius = std::acos(double{*light_value(sun, "cos_total")});
+  const double height = std::asin(double{light_vector(sun, "direction").z});
   double sum = 0;
   constexpr int k_rows = 20000;
   for (int i = 0; i < k_rows; ++i) {

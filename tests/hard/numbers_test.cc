@@ -7,6 +7,7 @@
 #include "tracer/base/files.h"
 #include "tracer/render/view.h"
 #include "tracer/scene/sdl.h"
+#include "tracer/scene/type_tables.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -164,18 +165,20 @@ std::vector<Spoiler> light_spoilers() {
        },
        "its position must be finite",
        {k_nan, k_infinity, 3e38f}},
-      {"spot's axis", [](Picture& p, float x) { spot_of(p).direction.x = x; },
+      {"spot's axis", [](Picture& p, float x) { *light_value(spot_of(p), "direction") = x; },
        "its direction must be finite"},
-      {"spot's outer cosine", [](Picture& p, float x) { spot_of(p).cos_total = x; },
-       "its cosines must be finite"},
-      {"spot's inner cosine", [](Picture& p, float x) { spot_of(p).cos_falloff = x; },
-       "its cosines must be finite"},
+      {"spot's outer cosine",
+       [](Picture& p, float x) { *light_value(spot_of(p), "cos_total") = x; },
+       "its cos_total must be finite"},
+      {"spot's inner cosine",
+       [](Picture& p, float x) { *light_value(spot_of(p), "cos_falloff") = x; },
+       "its cos_falloff must be finite"},
       {"sun's radius",
        [](Picture& p, float x) {
          p.scene.lights.push_back(pictures::sun_light({0, 0, 1}, 0.3, {1, 1, 1}));
-         p.scene.lights.back().cos_total = x;
+         *light_value(p.scene.lights.back(), "cos_total") = x;
        },
-       "its cosines must be finite"},
+       "its cos_total must be finite"},
       {"texel",
        [](Picture& p, float x) {
          p.scene.images.push_back(pictures::small_sky());

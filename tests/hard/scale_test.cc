@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes of a micrometre and of a thousand kilometres, and far from the origin: the same picture.
 #include "tests/hard/everywhere.h"
+#include "tracer/scene/type_tables.h"
 
 #include <gtest/gtest.h>
 
@@ -16,17 +17,27 @@ using pictures::Picture;
 
 const std::vector<hard::Way> k_two_ways = {{}, {MathMode::fast, 1, true}};
 
+/// Whether the light has any: it is a lamp then, whose light thins with distance.
+template <typename Move>
+bool move_points(Light& light, const Move& move) {
+  bool any = false;
+  for (const LightInput& input : type_of(light).host.inputs) {
+    if (input.value != LightValue::point) continue;
+    set_light_value(light, input.name, move(light_vector(light, input.name)));
+    any = true;
+  }
+  return any;
+}
+
 /// The picture with every length times `s`: lamps shine s^2 as strongly, so that every radiance is
 /// what it was.
 Picture scaled(Picture p, float s) {
   for (Object& object : p.scene.objects)
     for (Vec3& v : object.mesh.positions)
       v = v * s;
-  for (Light& light : p.scene.lights) {
-    light.position = light.position * s;
-    if (light.kind == LightKind::point || light.kind == LightKind::spot)
+  for (Light& light : p.scene.lights)
+    if (move_points(light, [&](Vec3 point) { return point * s; }))
       light.color = light.color * (s * s);
-  }
   for (Texture& texture : p.scene.textures)
     for (std::size_t row = 0; row < 3; ++row)
       for (std::size_t column = 0; column < 3; ++column)
@@ -43,7 +54,7 @@ Picture moved(Picture p, Vec3 by) {
     for (Vec3& v : object.mesh.positions)
       v = v + by;
   for (Light& light : p.scene.lights)
-    light.position = light.position + by;
+    move_points(light, [&](Vec3 point) { return point + by; });
   p.camera.position = p.camera.position + to_double(by);
   p.camera.target = p.camera.target + to_double(by);
   return p;

@@ -70,25 +70,19 @@ LightAnswer ask(const LightQuestion& q) {
   LightSample s = no_light();
   real3 escape = splat(real{0});
   real escape_pdf = 0;
-  switch (q.kind) {
-    case LightKind::point:
-      s = point_sample(t, at, from, u);
-      break;
-    case LightKind::spot:
-      s = spot_sample(t, at, from, u);
-      break;
-    case LightKind::mesh:
-      s = mesh_sample(t, at, from, u);
-      break;
-    case LightKind::sun:
-      s = sun_sample(t, at, from, u);
-      escape = sun_escape(t, at, of(q.direction), &escape_pdf);
-      break;
-    case LightKind::infinite:
-      s = infinite_sample(t, at, from, u);
-      escape = infinite_escape(t, at, of(q.direction), &escape_pdf);
-      break;
+  int row = 0;  // in the order of DS_ALL_LIGHTS
+#define DS_ASK(sdl_name, prefix) \
+  if (row++ == q.light) s = prefix##_sample(t, at, from, u);
+#define DS_ASK_BEYOND(sdl_name, prefix)                            \
+  if (row++ == q.light) {                                          \
+    s = prefix##_sample(t, at, from, u);                           \
+    escape = prefix##_escape(t, at, of(q.direction), &escape_pdf); \
   }
+  DS_ASK("", mesh)
+  DS_UNMET_LIGHTS(DS_ASK)
+  DS_BEYOND_LIGHTS(DS_ASK_BEYOND)
+#undef DS_ASK
+#undef DS_ASK_BEYOND
   return {three(s.wi), three(s.radiance), double{s.pdf}, three(escape), double{escape_pdf}};
 }
 

@@ -161,27 +161,19 @@ Scene triangle_scene() {
   return scene;
 }
 
-Scene scene_of(audit::LightKind kind) {
+Scene scene_of(const LightType& type) {
   Scene scene = triangle_scene();
-  switch (kind) {
-    case audit::LightKind::point:
-      scene.lights.push_back(pictures::point_light({0.2f, 0.1f, 1}, {3, 2, 1}));
-      break;
-    case audit::LightKind::spot:
-      scene.lights.push_back(
-          pictures::spot_light({0.2f, 0.1f, 1}, {0.1f, 0, -1}, 35, 20, {3, 2, 1}));
-      break;
-    case audit::LightKind::mesh:
-      scene.materials[0].emits = true;
-      scene.materials[0].emission.constant = {3, 2, 1};
-      break;
-    case audit::LightKind::sun:
-      scene.lights.push_back(pictures::sun_light({0.3f, -0.4f, 0.7f}, 0.265, {5, 4, 3}));
-      break;
-    case audit::LightKind::infinite:
-      scene.images.push_back(pictures::small_sky());
-      scene.lights.push_back(pictures::image_light(0));
-      break;
+  if (type.kernel_prefix == "point") {
+    scene.lights.push_back(pictures::point_light({0.2f, 0.1f, 1}, {3, 2, 1}));
+  } else if (type.kernel_prefix == "spot") {
+    scene.lights.push_back(pictures::spot_light({0.2f, 0.1f, 1}, {0.1f, 0, -1}, 35, 20, {3, 2, 1}));
+  } else if (type.kernel_prefix == "mesh") {
+    scene.materials[0].emits = true;
+    scene.materials[0].emission.constant = {3, 2, 1};
+  } else if (type.kernel_prefix == "sun") {
+    scene.lights.push_back(pictures::sun_light({0.3f, -0.4f, 0.7f}, 0.265, {5, 4, 3}));
+  } else {
+    pictures::add_light(scene, type.kernel_prefix);
   }
   return scene;
 }
@@ -198,12 +190,13 @@ TEST(Precision, Lights) {
       escape("light: radiance of what escapes");
   Numbers numbers(2);
   int borders = 0, asked = 0;
-  for (const auto kind : {audit::LightKind::point, audit::LightKind::spot, audit::LightKind::mesh,
-                          audit::LightKind::sun, audit::LightKind::infinite}) {
-    const Packed packed(scene_of(kind));
+  for (const LightType& type : light_types()) {
+    const Packed packed(scene_of(type));
+    const bool image = (type.host.made_by & kernels::k_host_panorama) != 0;
+    const bool spot = type.kernel_prefix == "spot", mesh = type.kernel_prefix == "mesh";
     for (int i = 0; i < 20000; ++i) {
       LightQuestion q;
-      q.kind = kind;
+      q.light = static_cast<int>(&type - light_types().data());
       q.lights = &packed.lights;
       q.tables = &packed.tables;
       q.triangles = &packed.triangles;
@@ -216,8 +209,7 @@ TEST(Precision, Lights) {
       q.direction = numbers.direction();
       const LightAnswer f = in_float::ask(q), d = in_double::ask(q);
       ++asked;
-      const std::string where = fmt::format("kind {} at {:g} m", static_cast<int>(kind), far);
-      const bool image = kind == audit::LightKind::infinite;
+      const std::string where = fmt::format("{} at {:g} m", type.kernel_prefix, far);
       // On a cell's border, or on a disc's rim, a rounding decides between two answers.
       if ((f.pdf > 0) != (d.pdf > 0) || (image && relative(f.pdf, d.pdf) > 0.01) ||
           (f.escape_pdf > 0) != (d.escape_pdf > 0) ||
@@ -233,22 +225,20 @@ TEST(Precision, Lights) {
         way.add(distance(f.wi, d.wi), found, where);
         // The spot's ramp goes to nothing, where no difference is small beside it: beside its
         // strength without the ramp, then, of which 0.12 of cosine take it to the fourth power.
-        const double strength = kind == audit::LightKind::spot ? unramped(q) : greatest(d.radiance);
+        const double strength = spot ? unramped(q) : greatest(d.radiance);
         radiance.add(greatest({f.radiance[0] - d.radiance[0], f.radiance[1] - d.radiance[1],
                                f.radiance[2] - d.radiance[2]}) /
                          strength,
-                     image                            ? found * 1000
-                     : kind == audit::LightKind::spot ? 4 / 0.12
-                                                      : 1,
+                     image  ? found * 1000
+                     : spot ? 4 / 0.12
+                            : 1,
                      where);
         // A mesh's pdf is over the cosine at the light, an image's over the sine from its pole.
-        const double under = kind == audit::LightKind::mesh ? std::fabs(d.wi[2])
-                             : image                        ? std::hypot(d.wi[0], d.wi[1])
-                                                            : 1;
+        const double under = mesh ? std::fabs(d.wi[2]) : image ? std::hypot(d.wi[0], d.wi[1]) : 1;
         pdf.add(relative(f.pdf, d.pdf), found / std::max(under, 1e-6), where);
       }
       // A place in the image is known to half-ulps of its width; the disc of a sun has none.
-      if (image || kind == audit::LightKind::sun)
+      if (has_trait(type, kernels::k_trait_beyond))
         escape.add(relative(f.escape, d.escape), image ? 19 * 1000 : 1, where);
     }
   }

@@ -28,9 +28,8 @@ struct BsdfAnswer {
   double sampled_pdf = 0;
 };
 
-enum class LightKind { point, spot, mesh, sun, infinite };
 struct LightQuestion {
-  LightKind kind = LightKind::point;
+  int light = 0;                               ///< row of kernels/lists.h
   const std::vector<float>* lights = nullptr;  ///< tables as device/scene_pack.h packs them
   const std::vector<float>* tables = nullptr;
   const std::vector<float>* triangles = nullptr;
@@ -41,7 +40,7 @@ struct LightQuestion {
 struct LightAnswer {
   Three wi{}, radiance{};
   double pdf = 0;
-  Three escape{};  ///< sun and infinite
+  Three escape{};  ///< of those that lie beyond the scene
   double escape_pdf = 0;
 };
 

@@ -108,7 +108,7 @@ TEST(DirectLight, AnyNumberOfLampsOnAPlane) {
           double sum = 0;
           for (int i = 2; i < count; ++i) {
             const Light& lamp = p.scene.lights[static_cast<std::size_t>(i)];
-            const Vec3d way = to_double(lamp.position) - at;
+            const Vec3d way = to_double(light_vector(lamp, "position")) - at;
             sum += double{lamp.color.x} * way.z / std::pow(length(way), 3);
           }
           return sum;
@@ -125,11 +125,11 @@ TEST(DirectLight, SpotLampOnAPlane) {
   expect_direct_light(
       p, view, 48,
       [&](Vec3d at) {
-        const Vec3d way = to_double(lamp.position) - at;
-        const double cosine = dot(way, -to_double(lamp.direction)) / length(way);
-        const double ramp = std::clamp(
-            (cosine - double{lamp.cos_total}) / double{lamp.cos_falloff - lamp.cos_total}, 0.0,
-            1.0);
+        const Vec3d way = to_double(light_vector(lamp, "position")) - at;
+        const double cosine = dot(way, -to_double(light_vector(lamp, "direction"))) / length(way);
+        const float total = *light_value(lamp, "cos_total");
+        const float width = *light_value(lamp, "cos_falloff") - total;
+        const double ramp = std::clamp((cosine - double{total}) / double{width}, 0.0, 1.0);
         // scene.h: falloff(cos a) / cos a.
         return 3 * std::pow(ramp, 4) / cosine * way.z / std::pow(length(way), 3);
       },
@@ -145,7 +145,8 @@ TEST(DirectLight, SunOnAPlane) {
     // The disc is wholly above the horizon, so the mean of the cosine over it is sin^2 / 2 over 1 -
     // cos, times the centre's.
     const double radius = radius_deg * k_pi / 180;
-    const double expected = 200 * k_pi * std::pow(std::sin(radius), 2) * double{sun.direction.z};
+    const double expected =
+        200 * k_pi * std::pow(std::sin(radius), 2) * double{light_vector(sun, "direction").z};
     // The cosine of the sun's radius is stored as a float, good to 3e-8: 3e-3 of 1 - cos for the
     // real sun.
     expect_direct_light(

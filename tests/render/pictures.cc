@@ -5,9 +5,13 @@
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
+#include <set>
 #include <span>
 
 namespace ds::pictures {
@@ -103,6 +107,25 @@ void add_far_lights(Scene& scene) {
   scene.lights.push_back(image_light(static_cast<int>(scene.images.size()) - 1));
   scene.lights.push_back(sun_light({0.3f, -0.5f, 0.8f}, 1.0, {900, 800, 700}));
   scene.lights.push_back(constant_light({0.1f, 0.1f, 0.15f}));
+}
+
+/// A picture for each light that stands in neither scene, so that one more changes no other.
+void add_other_lights(std::vector<Picture>& pictures, std::initializer_list<const Scene*> with) {
+  std::set<int> there{make_light("mesh").type};
+  for (const Scene* other : with)
+    for (const Light& light : other->lights)
+      there.insert(light.type);
+  for (std::size_t i = 0; i < light_types().size(); ++i) {
+    if (there.contains(static_cast<int>(i))) continue;
+    const std::string_view prefix = light_types()[i].kernel_prefix;
+    Scene scene;
+    const int glossy = add_material(scene, "glossy2");
+    add_object(scene, quad({0, 0, -0.35f}, {3, 0, 0}, {0, 3, 0}), glossy);
+    add_object(scene, sphere({0, 0, 0.2f}, 0.5f, 9, true), glossy);
+    add_light(scene, prefix);
+    pictures.push_back(
+        {fmt::format("light-{}", prefix), scene, looking_at_origin(), small_engine()});
+  }
 }
 
 }  // namespace
@@ -210,45 +233,73 @@ int add_texture(Scene& scene, std::string_view type, TextureRef first) {
 }
 
 Light point_light(Vec3 position, Vec3 intensity) {
-  Light light;
-  light.kind = LightKind::point;
-  light.position = position;
+  Light light = make_light("point");
+  set_light_value(light, "position", position);
   light.color = intensity;
   return light;
 }
 
 Light spot_light(Vec3 position, Vec3 direction, double outer_deg, double inner_deg,
                  Vec3 intensity) {
-  Light light = point_light(position, intensity);
-  light.kind = LightKind::spot;
-  light.direction = unit(direction);
-  light.cos_total = static_cast<float>(std::cos(outer_deg * k_pi / 180));
-  light.cos_falloff = static_cast<float>(std::cos(inner_deg * k_pi / 180));
+  Light light = make_light("spot");
+  light.color = intensity;
+  set_light_value(light, "position", position);
+  set_light_value(light, "direction", unit(direction));
+  *light_value(light, "cos_total") = static_cast<float>(std::cos(outer_deg * k_pi / 180));
+  *light_value(light, "cos_falloff") = static_cast<float>(std::cos(inner_deg * k_pi / 180));
   return light;
 }
 
 Light sun_light(Vec3 direction, double radius_deg, Vec3 radiance) {
-  Light light;
-  light.kind = LightKind::sun;
-  light.direction = unit(direction);
+  Light light = make_light("sun");
   light.color = radiance;
-  light.cos_total = static_cast<float>(std::cos(radius_deg * k_pi / 180));
+  set_light_value(light, "direction", unit(direction));
+  *light_value(light, "cos_total") = static_cast<float>(std::cos(radius_deg * k_pi / 180));
   return light;
 }
 
 Light constant_light(Vec3 radiance) {
-  Light light;
-  light.kind = LightKind::constant_infinite;
+  Light light = make_light("constant_infinite");
   light.color = radiance;
   return light;
 }
 
 Light image_light(int image) {
-  Light light;
-  light.kind = LightKind::infinite;
+  Light light = make_light("infinite");
   light.color = {1, 1, 1};
   light.image = image;
   return light;
+}
+
+Light light_of_table(std::string_view prefix) {
+  Light light = make_light(prefix);
+  light.color = {3, 2.5f, 2};
+  for (const LightInput& input : type_of(light).host.inputs) {
+    if (input.value == LightValue::point) set_light_value(light, input.name, {-1, -1, 2});
+    if (input.value == LightValue::direction)
+      set_light_value(light, input.name, unit({0.3f, 0.5f, -0.8f}));
+    if (input.value == LightValue::number)
+      *light_value(light, input.name) = std::stof(std::string(input.default_value));
+  }
+  return light;
+}
+
+void add_light(Scene& scene, std::string_view prefix) {
+  if (prefix == "spot") {
+    scene.lights.push_back(spot_light({1, -1, 2}, {-0.45f, 0.4f, -0.8f}, 30, 20, {8, 9, 10}));
+  } else if (prefix == "sun") {
+    scene.lights.push_back(sun_light({0.3f, -0.5f, 0.8f}, 1.0, {900, 800, 700}));
+  } else if (prefix == "infinite") {
+    scene.images.push_back(small_sky());
+    scene.lights.push_back(image_light(static_cast<int>(scene.images.size()) - 1));
+  } else if (prefix == "mesh") {
+    const int emitter = add_matte(scene, {0, 0, 0});
+    scene.materials.back().emits = true;
+    scene.materials.back().emission.constant = {4, 3, 2};
+    add_object(scene, quad({0, -0.5f, 1.2f}, {0.3f, 0, 0}, {0, -0.2f, 0}), emitter);
+  } else {
+    scene.lights.push_back(light_of_table(prefix));
+  }
 }
 
 Image small_sky() {
@@ -274,6 +325,7 @@ std::vector<Picture> all_effects() {
   add_every_texture(textures);
   add_far_lights(textures);
   pictures.push_back({"textures", textures, looking_at_origin(), small_engine()});
+  add_other_lights(pictures, {&materials, &textures});
   Scene everything;
   add_every_material(everything);
   add_every_texture(everything);

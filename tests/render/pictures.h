@@ -38,6 +38,10 @@ Light spot_light(Vec3 position, Vec3 direction, double outer_deg, double inner_d
 Light sun_light(Vec3 direction, double radius_deg, Vec3 radiance);
 Light constant_light(Vec3 radiance);
 Light image_light(int image);
+/// A light that is all in its type's table, with the table's numbers, from about above.
+Light light_of_table(std::string_view prefix);
+/// A light of this kernel prefix, and what it needs; it shines on the origin.
+void add_light(Scene& scene, std::string_view prefix);
 /// A lat-long picture with one texel a thousand times as bright as the rest; odd width and height.
 Image small_sky();
 

@@ -123,7 +123,7 @@ void add_nodes(const Scene& scene, const Features& f, EffectList& list) {
 Callers light_callers(const Scene& scene, std::string_view kind) {
   Callers callers;
   for (const Light& light : scene.lights)
-    if (light_kind_name(light.kind) == kind && shines(light))
+    if (type_of(light).kernel_prefix == kind && shines(light))
       callers.add(named("light", light.name));
   if (kind == "mesh")
     for (const Object& object : scene.objects)
@@ -135,7 +135,7 @@ Callers light_callers(const Scene& scene, std::string_view kind) {
 /// Why a kind of light that nothing calls for is left out.
 std::string why_no_light(const Scene& scene, std::string_view kind) {
   for (const Light& light : scene.lights)
-    if (light_kind_name(light.kind) == kind) return named("light", light.name) + " is black";
+    if (type_of(light).kernel_prefix == kind) return named("light", light.name) + " is black";
   if (kind != "mesh") return "no light is of this type";
   for (const Object& object : scene.objects)
     if (object.material >= 0 && material_of(scene, object.material).emits)

@@ -135,8 +135,10 @@ Hash128 hash_of(const Image& image) {
 
 }  // namespace
 
-LightRow infinite_row(const Scene& scene, const Light& light, double scene_radius, PackCache* cache,
-                      Words& tables) {
+/// Texels that a shared exponent of 8 bits and mantissas of 8 bits hold exactly, as those of .hdr
+/// files are, are kept in one word each.
+LightRow pack_infinite(const Scene& scene, const Light& light, double scene_radius,
+                       PackCache* cache, Words& tables) {
   const Image& image = scene.images[static_cast<std::size_t>(light.image)];
   const auto make = [&] { return tables_of(image); };
   const auto known = cache != nullptr ? cache->infinite.get(hash_of(image), make)

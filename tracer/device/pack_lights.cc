@@ -3,11 +3,13 @@
 #include "tracer/base/luminance.h"
 #include "tracer/device/pack_rows.h"
 #include "tracer/kernels/all_nodes.h"
+#include "tracer/scene/type_tables.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 namespace ds {
 
@@ -26,45 +28,26 @@ void add_cumulative(const std::vector<double>& weights, Words& tables) {
 
 namespace {
 
-LightRow sun_row(const Light& light, double scene_radius) {
-  LightRow row{"sun", 0, {}};
-  const double one_minus_cos = 1.0 - double{light.cos_total};
-  const double solid_angle = 2 * std::numbers::pi * one_minus_cos;
-  const Vec3d z = to_double(light.direction);
-  const Vec3d x = normalized(cross(std::fabs(z.x) > 0.9 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0}, z));
-  row.parameters.add(light.color);
-  row.parameters.add(light.direction);
-  row.parameters.add(to_float(x));
-  row.parameters.add(to_float(cross(z, x)));
-  row.parameters.add(static_cast<float>(one_minus_cos));
-  row.parameters.add(static_cast<float>(one_minus_cos * (2 - one_minus_cos)));
-  row.parameters.add(static_cast<float>(1 / solid_angle));
-  row.weight =
-      luminance(light.color) * solid_angle * std::numbers::pi * scene_radius * scene_radius;
-  return row;
+/// What a scene says of a light, in the table's order.
+std::vector<float> inputs_of(const Light& light) {
+  std::vector<float> inputs{light.color.x, light.color.y, light.color.z};
+  inputs.insert(inputs.end(), light.values.begin(), light.values.end());
+  return inputs;
 }
 
-LightRow point_row(const Light& light) {
-  LightRow row{"point", 4 * std::numbers::pi * luminance(light.color), {}};
-  row.parameters.add(light.color);
-  row.parameters.add(light.position);
-  return row;
-}
-
-LightRow spot_row(const Light& light) {
-  LightRow row = point_row(light);
-  row.kind = "spot";
-  row.parameters.add(light.direction);
-  row.parameters.add(light.cos_total);
-  // Equal angles make a sharp edge: one ulp apart, so that the ramp has a width.
-  row.parameters.add(std::max(light.cos_falloff, std::nextafter(light.cos_total, 2.0f)));
-  row.weight *= 0.5 * (1.0 - 0.5 * (double{light.cos_total} + double{light.cos_falloff}));
-  return row;
-}
-
-LightRow constant_row(const Light& light) {
-  LightRow row{"constant_infinite", 0, {}};
-  row.parameters.add(light.color);
+LightRow row_of_inputs(const Light& light, double scene_radius) {
+  const LightType& type = type_of(light);
+  const std::vector<float> inputs = inputs_of(light);
+  LightRow row{type.kernel_prefix, 0, {}};
+  if (type.host.power != nullptr)
+    row.weight = type.host.power(luminance(light.color), inputs.data(), scene_radius);
+  if (type.host.row != nullptr) {
+    std::array<float, kernels::k_light_words - kernels::k_light_parameters> words{};
+    type.host.row(inputs.data(), words.data());
+    row.parameters.add(std::span<const float>(words));
+  } else {
+    row.parameters.add(std::span<const float>(inputs));
+  }
   return row;
 }
 
@@ -110,19 +93,12 @@ double scene_radius_of(const Scene& scene) {
 
 LightRow light_row(const Scene& scene, const Light& light, double radius, PackCache* cache,
                    Words& tables) {
-  switch (light.kind) {
-    case LightKind::point:
-      return point_row(light);
-    case LightKind::spot:
-      return spot_row(light);
-    case LightKind::sun:
-      return sun_row(light, radius);
-    case LightKind::constant_infinite:
-      return constant_row(light);
-    case LightKind::infinite:
-      return infinite_row(scene, light, radius, cache, tables);
-  }
-  DS_ASSERT(false);
+#define DS_PACK_WITH_TABLES(sdl_name, prefix)                                      \
+  if constexpr ((kernels::prefix##_on_host.made_by & kernels::k_host_tables) != 0) \
+    if (type_of(light).kernel_prefix == #prefix)                                   \
+      return pack_##prefix(scene, light, radius, cache, tables);
+  DS_SCENE_LIGHTS(DS_PACK_WITH_TABLES)
+  return row_of_inputs(light, radius);
 }
 
 bool is_escape(const Features& features, const LightRow& row) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tracer/device/scene_pack.h"
+#include "tracer/kernels/lists.h"
 
 #include <string_view>
 #include <vector>
@@ -19,11 +20,12 @@ struct LightRow {
 /// Appends cumulative shares as floats; the last of positive share and all behind it are exactly 1.
 void add_cumulative(const std::vector<double>& weights, Words& tables);
 
-/// Row and tables of a lat-long image at infinity (kernels/lights/infinite.h). Texels that a shared
-/// exponent of 8 bits and mantissas of 8 bits hold exactly, as those of .hdr files are, are kept in
-/// one word each. `cache` may be null.
-LightRow infinite_row(const Scene& scene, const Light& light, double scene_radius, PackCache* cache,
-                      Words& tables);
+/// Row and tables of lights with k_host_tables, in pack_NAME.cc. `cache` may be null.
+#define DS_DECLARE_PACK(sdl_name, prefix)                                             \
+  LightRow pack_##prefix(const Scene& scene, const Light& light, double scene_radius, \
+                         PackCache* cache, Words& tables);
+DS_SCENE_LIGHTS(DS_DECLARE_PACK)
+#undef DS_DECLARE_PACK
 
 /// Rows of colours in the tables (kernels/scene_data.h), and their offset; none where no texture of the
 /// program reads them.

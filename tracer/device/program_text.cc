@@ -188,7 +188,7 @@ void add_light(const LightType& type, Features& f) {
 void add_lights(const Scene& scene, Features& f) {
   std::set<std::string_view> names;
   for (const Light& light : scene.lights)
-    if (shines(light)) names.insert(light_kind_name(light.kind));
+    if (shines(light)) names.insert(type_of(light).kernel_prefix);
   for (const Object& object : scene.objects)
     if (object.material >= 0 && shines(scene.materials[static_cast<std::size_t>(object.material)]))
       names.insert("mesh");
@@ -247,22 +247,6 @@ std::string chooser_list(const Features& f) {
 }
 
 }  // namespace
-
-std::string_view light_kind_name(LightKind kind) {
-  switch (kind) {
-    case LightKind::point:
-      return "point";
-    case LightKind::spot:
-      return "spot";
-    case LightKind::sun:
-      return "sun";
-    case LightKind::constant_infinite:
-      return "constant_infinite";
-    case LightKind::infinite:
-      return "infinite";
-  }
-  DS_ASSERT(false);
-}
 
 bool samples_lights(const Features& f) {
   return any_light(f, kernels::k_trait_sampled);

@@ -34,8 +34,6 @@ struct Features {
   static int number(const std::vector<std::string>& list, std::string_view name);
 };
 
-/// "point", "spot", "sun", "constant_infinite", "infinite": of its kernel header.
-std::string_view light_kind_name(LightKind kind);
 bool samples_lights(const Features& features);
 
 /// False for a light or an emitter whose radiance is 0: it is treated as if it were not there. What

@@ -5,9 +5,19 @@
 // tests/precision compares the two.
 #pragma once
 
+#include "tracer/base/number_range.h"
+#include "tracer/base/vec.h"
+
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
+#include <span>
+#include <string_view>
+
+/// What of a kernel file stands behind #ifdef DS_HOOK_HOST is the host's: no program asks for that hook
+/// (device/program_text.cc), so nothing is stale when it changes.
+#define DS_HOOK_HOST
 
 #ifdef DS_REAL_DOUBLE
 #  define DS_KERNELS kernels_double

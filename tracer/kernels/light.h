@@ -2,6 +2,7 @@
 // What every light answers. A light KIND in lights/KIND.h has
 //
 //   DS_TRAITS(KIND, sum)                          of traits.h
+//   LightOnHost KIND_on_host                      of traits.h, in a DS_HOOK_HOST part
 //   LightSample KIND_sample(LightTables t, uint at, real3 from, real2 u)
 //                                                 a way from a surface point to the light
 //   real3 KIND_escape(LightTables t, uint at, real3 direction, real* pdf)

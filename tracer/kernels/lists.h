@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every material, texture and light there is, for the host: X(SDL name, kernel prefix, PREFIX in
-// capitals) or, of lights, X(kernel prefix). A scene's program gets a list of those it uses; this
-// file is in none, so a new line here makes no picture stale.
+// capitals) or, of lights, X(SDL name, kernel prefix). A scene's program gets a list of those it
+// uses; this file is in none, so a new line here makes no picture stale.
 #pragma once
 
 /// Those with a BSDF, and those that choose among other materials.
@@ -30,11 +30,17 @@
   X("hitpointgrey", hitpointgrey, HITPOINTGREY)       \
   X("hitpointalpha", hitpointalpha, HITPOINTALPHA)
 
-/// Those that lie beyond the scene come last.
-#define DS_ALL_LIGHTS(X) \
-  X(mesh)                \
-  X(point)               \
-  X(spot)                \
-  X(constant_infinite)   \
-  X(infinite)            \
-  X(sun)
+/// Those that no path meets, and those that lie beyond the scene, which paths that leave it meet.
+#define DS_UNMET_LIGHTS(X) \
+  X("point", point)        \
+  X("spot", spot)
+#define DS_BEYOND_LIGHTS(X)                \
+  X("constantinfinite", constant_infinite) \
+  X("infinite", infinite)                  \
+  X("sun", sun)
+/// All that a file has under scene.lights; the first is what an object with an emitting material is.
+#define DS_SCENE_LIGHTS(X) DS_UNMET_LIGHTS(X) DS_BEYOND_LIGHTS(X)
+#define DS_ALL_LIGHTS(X) X("", mesh) DS_SCENE_LIGHTS(X)
+/// Types of a file that become one of these: X(SDL name, kernel prefix of that); the SDL name is the
+/// prefix of NAME_reading, too.
+#define DS_MADE_LIGHTS(X) X(sky2, infinite)

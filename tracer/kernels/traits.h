@@ -20,3 +20,41 @@ enum {
       128,              ///< is chosen by next-event estimation; others, scattered rays find as well
   k_trait_small = 256,  ///< shines from few directions: what is gathered of it is small and bright
 };
+
+/// What of a light the host makes by a function in a file of its own.
+enum {
+  k_host_reads = 1,     ///< NAME_reading of scene/lights/NAME.cc: more than its inputs' properties
+  k_host_tables = 2,    ///< pack_NAME of device/pack_NAME.cc: its row points into tables
+  k_host_panorama = 4,  ///< Light::image, and how it is turned
+};
+
+/// What a scene says of a light. Light::values has all but the colour, one behind the other.
+enum class LightValue {
+  color,      ///< Light::color: the first input of each light
+  point,      ///< 3: world, metres
+  direction,  ///< 3: world, unit
+  number,     ///< 1
+};
+struct LightInput {
+  std::string_view name;
+  LightValue value;
+  /// Of the SDL's property of this name, which a transformation applies to; "" for what is none and
+  /// is made from others by NAME_reading.
+  std::string_view default_value = "";
+  std::string_view help = "";
+  NumberRange range{};
+
+  constexpr int width() const { return value == LightValue::number ? 1 : 3; }
+};
+
+/// NAME_on_host, in the DS_HOOK_HOST part of a light's header. What its functions call inputs are the
+/// inputs' numbers, one behind the other.
+struct LightOnHost {
+  std::span<const LightInput> inputs;
+  unsigned made_by = 0;  ///< sum of k_host_*
+  /// Share of next-event estimation among others, by power; null: never sampled. `luminance`: of
+  /// its colour; `scene_radius`: half the diagonal of the scene, on whose disc falls what comes from
+  /// infinity.
+  double (*power)(double luminance, const float* inputs, double scene_radius) = nullptr;
+  void (*row)(const float* inputs, float* row) = nullptr;  ///< null: its row is the inputs
+};

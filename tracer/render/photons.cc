@@ -60,8 +60,8 @@ natural chosen_child(std::string_view prefix, const float* inputs, kernels::mask
 
 kernels::LightSample sample_light(std::string_view kind, kernels::LightTables tables, natural at,
                                   real3 from, real2 u) {
-#define DS_SAMPLE_KIND(name) \
-  if (kind == #name) return kernels::name##_sample(tables, at, from, u);
+#define DS_SAMPLE_KIND(sdl_name, prefix) \
+  if (kind == #prefix) return kernels::prefix##_sample(tables, at, from, u);
   DS_ALL_LIGHTS(DS_SAMPLE_KIND)
   return kernels::no_light();
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/canonical.h"
 #include "tracer/base/error.h"
+#include "tracer/kernels/layout.h"
 #include "tracer/scene/scene_reads.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
@@ -46,22 +47,6 @@ std::string_view word(ImageChannel channel) {
       return "mean";
     case ImageChannel::colored_mean:
       return "colored_mean";
-  }
-  return "";
-}
-
-std::string_view word(LightKind kind) {
-  switch (kind) {
-    case LightKind::point:
-      return "point";
-    case LightKind::spot:
-      return "spot";
-    case LightKind::sun:
-      return "sun";
-    case LightKind::constant_infinite:
-      return "constantinfinite";
-    case LightKind::infinite:
-      return "infinite";
   }
   return "";
 }
@@ -177,15 +162,16 @@ class Writer {
 
   void write(const Light& light) {
     prefix_ = "lights." + light.name;
-    add("type", word(light.kind));
-    add("color", light.color);
-    const bool is_spot = light.kind == LightKind::spot;
-    const bool is_sun = light.kind == LightKind::sun;
-    if (is_spot || light.kind == LightKind::point) add("position", light.position);
-    if (is_spot || is_sun) add("direction", light.direction);
-    if (is_spot || is_sun) add("cos_total", light.cos_total);
-    if (is_spot) add("cos_falloff", light.cos_falloff);
-    if (light.kind != LightKind::infinite) return;
+    const LightType& type = type_of(light);
+    add("type", type.name);
+    for (const LightInput& input : type.host.inputs)
+      if (input.value == LightValue::color)
+        add(input.name, light.color);
+      else if (input.width() == 3)
+        add(input.name, light_vector(light, input.name));
+      else
+        add(input.name, *light_value(light, input.name));
+    if ((type.host.made_by & kernels::k_host_panorama) == 0) return;
     add("light_to_world", light.light_to_world);
     add("upper_hemisphere_only", light.upper_hemisphere_only);
     add_image(light.image);

@@ -82,24 +82,21 @@ struct Material {
   std::vector<InputOfPixels> of_pixels;
 };
 
-enum class LightKind { point, spot, sun, constant_infinite, infinite };
-
-/// A light that is no mesh. Direction and radiance are in world space. "W" stands for whatever unit
+/// A light that is no mesh. Points and directions are in world space. "W" stands for whatever unit
 /// the SDL file has: LuxCore's sun and sky are photometric (about 1e5 lm/m^2 on the ground).
+///
+/// Types and their values: scene/type_tables.h. point: `color` is radiant intensity, W/sr. spot:
+/// that on the axis; LuxCore's intensity at the angle a from the axis is color * falloff(cos a) /
+/// cos a (as if through a flat opening), falloff = clamp((cos a - cos_total) / (cos_falloff -
+/// cos_total), 0, 1)^4; direction: the way it shines; cos_total: cosine beyond which there is no
+/// light; cos_falloff > cos_total: where the falloff starts. sun: radiance of the uniform disc,
+/// W/(m^2 sr); direction: towards it; cos_total: cosine of its angular radius. constant_infinite:
+/// radiance. infinite: factor on the image, whose values are radiance.
 struct Light {
   std::string name;
-  LightKind kind = LightKind::point;
-  /// point: radiant intensity, W/sr. spot: radiant intensity on the axis, W/sr; LuxCore's intensity
-  /// at the angle a from the axis is color * falloff(cos a) / cos a (as if through a flat opening),
-  /// falloff = clamp((cos a - cos_total) / (cos_falloff - cos_total), 0, 1)^4. sun: radiance of the
-  /// uniform disc, W/(m^2 sr). constant_infinite: radiance. infinite: factor on the image, whose
-  /// values are radiance.
+  int type = 0;  ///< row of light_types()
   Vec3 color;
-  Vec3 position;   ///< point, spot
-  Vec3 direction;  ///< spot: unit, the way it shines; sun: unit, towards the sun
-  /// spot: cosine beyond which there is no light; sun: cosine of the disc's angular radius.
-  float cos_total = 0;
-  float cos_falloff = 0;  ///< spot: cosine where the falloff starts, > cos_total
+  std::vector<float> values;  ///< of the row's inputs behind the colour, in its order
   int image = -1;  ///< infinite: lat-long image in Scene::images (sky2 makes one of its own, with
                    ///< an empty file name)
   /// infinite: orthogonal 3x3, no translation; it mirrors (determinant -1) for image files. In

@@ -2,6 +2,8 @@
 #include "tracer/scene/scene_check.h"
 
 #include "tracer/base/error.h"
+#include "tracer/kernels/layout.h"
+#include "tracer/scene/type_tables.h"
 
 #include <cmath>
 #include <cstddef>
@@ -116,21 +118,33 @@ void check_material(const Scene& scene, std::size_t place) {
          material.name, emission.x, emission.y, emission.z);
 }
 
+void check_light_value(const Light& light, const LightInput& input) {
+  if (input.value == LightValue::color) return;
+  if (input.value == LightValue::number) {
+    const float number = *light_value(light, input.name);
+    if (!std::isfinite(number))
+      fail(ErrorKind::asset, "light {}: its {} must be finite, got {}", light.name, input.name,
+           number);
+    return;
+  }
+  const Vec3 v = light_vector(light, input.name);
+  if (input.value == LightValue::point && !is_near(v))
+    fail(ErrorKind::asset, "light {}: its {} must be finite and within {:g}, got {} {} {}",
+         light.name, input.name, k_farthest_coordinate, v.x, v.y, v.z);
+  if (!is_finite(v))
+    fail(ErrorKind::asset, "light {}: its {} must be finite", light.name, input.name);
+}
+
 void check_light(const Scene& scene, const Light& light) {
   if (!is_radiance(light.color))
     fail(ErrorKind::asset, "light {}: its colour must be finite and not negative, got {} {} {}",
          light.name, light.color.x, light.color.y, light.color.z);
-  const Vec3 p = light.position;
-  if (!is_near(p))
-    fail(ErrorKind::asset, "light {}: its position must be finite and within {:g}, got {} {} {}",
-         light.name, k_farthest_coordinate, p.x, p.y, p.z);
-  if (!is_finite(light.direction))
-    fail(ErrorKind::asset, "light {}: its direction must be finite", light.name);
-  if (!std::isfinite(light.cos_total) || !std::isfinite(light.cos_falloff))
-    fail(ErrorKind::asset, "light {}: its cosines must be finite, got {} and {}", light.name,
-         light.cos_total, light.cos_falloff);
+  const LightType& type = type_of(light);
+  for (const LightInput& input : type.host.inputs)
+    check_light_value(light, input);
   check_matrix(light.light_to_world, "light", light.name, "its transformation");
-  if (light.kind == LightKind::infinite && !is_index(light.image, scene.images.size()))
+  if ((type.host.made_by & kernels::k_host_panorama) != 0 &&
+      !is_index(light.image, scene.images.size()))
     fail(ErrorKind::asset, "light {}: its image must be one of {}, got {}", light.name,
          scene.images.size(), light.image);
 }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -44,10 +45,21 @@ std::span<const Row> named_rows(std::array<Row, Size>& rows, std::string_view pr
 #define DS_MATERIAL_ROW(sdl_name, prefix, PREFIX) \
   DS_NODE_ROW(sdl_name, prefix, PREFIX, kernels::prefix##_children)
 #define DS_TEXTURE_ROW(sdl_name, prefix, PREFIX) DS_NODE_ROW(sdl_name, prefix, PREFIX, 0)
-#define DS_LIGHT_ROW(prefix) LightType{#prefix, unsigned{kernels::prefix##_traits}},
 #define DS_CHILDREN_FIT(sdl_name, prefix, PREFIX) \
   static_assert(int{kernels::prefix##_children} <= int{kernels::k_most_children});
 DS_ALL_MATERIALS(DS_CHILDREN_FIT)
+
+#define DS_LIGHT_ROW(sdl_name, prefix) \
+  LightType{sdl_name, #prefix, unsigned{kernels::prefix##_traits}, kernels::prefix##_on_host},
+#define DS_IS_MET(sdl_name, prefix) \
+  static_assert((int{kernels::prefix##_traits} & int{kernels::k_trait_beyond}) != 0);
+#define DS_IS_UNMET(sdl_name, prefix) \
+  static_assert((int{kernels::prefix##_traits} & int{kernels::k_trait_beyond}) == 0);
+DS_BEYOND_LIGHTS(DS_IS_MET)
+DS_UNMET_LIGHTS(DS_IS_UNMET)
+#define DS_COLOR_IS_FIRST(sdl_name, prefix) \
+  static_assert(kernels::prefix##_inputs[0].value == LightValue::color);
+DS_SCENE_LIGHTS(DS_COLOR_IS_FIRST)
 
 std::span<const NodeType> make_material_types() {
   DS_ALL_MATERIALS(DS_NODE_LISTS)
@@ -59,6 +71,16 @@ std::span<const NodeType> make_texture_types() {
   DS_ALL_TEXTURES(DS_NODE_LISTS)
   static const std::array rows = {DS_ALL_TEXTURES(DS_TEXTURE_ROW)};
   return rows;
+}
+
+/// How many of a light's values stand before those of an input; of all for none of that name.
+std::size_t values_before(const LightType& type, std::string_view input) {
+  std::size_t count = 0;
+  for (const LightInput& one : type.host.inputs) {
+    if (one.name == input) break;
+    if (one.value != LightValue::color) count += static_cast<std::size_t>(one.width());
+  }
+  return count;
 }
 
 template <typename Row>
@@ -133,7 +155,8 @@ std::span<const NodeType> texture_types() {
 }
 
 std::span<const LightType> light_types() {
-  static constexpr std::array rows = {DS_ALL_LIGHTS(DS_LIGHT_ROW)};
+  static constexpr std::array rows = {LightType{"", "mesh", unsigned{kernels::mesh_traits}, {}},
+                                      DS_SCENE_LIGHTS(DS_LIGHT_ROW)};
   return rows;
 }
 
@@ -143,6 +166,40 @@ const LightType& light_type(std::string_view prefix) {
                    [&](const LightType& type) { return type.kernel_prefix == prefix; });
   DS_ASSERT(row != light_types().end());
   return *row;
+}
+
+const LightType& type_of(const Light& light) {
+  return light_types()[static_cast<std::size_t>(light.type)];
+}
+
+Light make_light(std::string_view prefix) {
+  Light light;
+  const LightType& type = light_type(prefix);
+  light.type = static_cast<int>(&type - light_types().data());
+  light.values.resize(values_before(type, ""));
+  return light;
+}
+
+const float* light_value(const Light& light, std::string_view input) {
+  const std::size_t at = values_before(type_of(light), input);
+  DS_ASSERT(at < light.values.size());
+  return light.values.data() + at;
+}
+
+float* light_value(Light& light, std::string_view input) {
+  return const_cast<float*>(light_value(std::as_const(light), input));
+}
+
+void set_light_value(Light& light, std::string_view input, Vec3 value) {
+  float* to = light_value(light, input);
+  to[0] = value.x;
+  to[1] = value.y;
+  to[2] = value.z;
+}
+
+Vec3 light_vector(const Light& light, std::string_view input) {
+  const float* v = light_value(light, input);
+  return {v[0], v[1], v[2]};
 }
 
 int find_type(std::span<const NodeType> types, std::string_view name) {

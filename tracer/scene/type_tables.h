@@ -2,6 +2,8 @@
 #pragma once
 
 #include "tracer/base/number_range.h"
+#include "tracer/kernels/layout.h"
+#include "tracer/scene/scene.h"
 
 #include <span>
 #include <string>
@@ -44,10 +46,16 @@ struct NodeType {
   std::span<const NumberType> numbers;
 };
 
-/// One kind of light: of tracer/kernels/lights/PREFIX.h.
+// DS_KERNELS: tests/precision compiles the kernels in double.
+using DS_KERNELS::LightInput;
+using DS_KERNELS::LightValue;
+
+/// One kind of light: of tracer/kernels/lights/PREFIX.h, whose light.h tells what stands in it.
 struct LightType {
+  std::string_view name;  ///< the SDL's `type`; "" for emitting objects
   std::string_view kernel_prefix;
   unsigned traits;
+  DS_KERNELS::LightOnHost host;
 };
 
 /// Whether a type has one of these traits.
@@ -62,13 +70,21 @@ bool reads_colors(const NodeType& texture);
 /// In the order of tracer/kernels/lists.h; Material::type and Texture::type index them.
 std::span<const NodeType> material_types();
 std::span<const NodeType> texture_types();
-/// In that order too; those beyond the scene come last.
+/// In that order too, for Light::type; those beyond the scene come last.
 std::span<const LightType> light_types();
 /// The row of a kernel prefix that there is.
 const LightType& light_type(std::string_view prefix);
+const LightType& type_of(const Light& light);
+/// A light of this kernel prefix: black, all its values 0.
+Light make_light(std::string_view prefix);
+/// Where the values of an input stand that the light has, but its colour.
+float* light_value(Light& light, std::string_view input);
+const float* light_value(const Light& light, std::string_view input);
+void set_light_value(Light& light, std::string_view input, Vec3 value);
+Vec3 light_vector(const Light& light, std::string_view input);
 
 /// What a kernel header says first: the paragraph at its top, on one line. `folder` is "materials",
-/// "textures" or "planes".
+/// "textures", "lights" or "planes".
 std::string header_comment(std::string_view folder, std::string_view prefix);
 
 /// Row of the type, or -1.

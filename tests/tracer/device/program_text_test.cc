@@ -117,6 +117,14 @@ TEST(ProgramText, HooksAreInNoProgramThatDoesNotAskForThem) {
     EXPECT_EQ(lit.find(word), std::string::npos) << word;
 }
 
+TEST(ProgramText, HoldsNothingOfTheHost) {
+  // Help, defaults and ranges of a light's properties stand in its header, and are in no key.
+  const std::string text = program_tokens(path_program_text(all_features()));
+  for (const char* word : {"DS_HOOK", "LightOnHost", "LightInput", "sun_power"})
+    EXPECT_EQ(text.find(word), std::string::npos) << word;
+  EXPECT_NE(text.find("sun_sample"), std::string::npos);
+}
+
 TEST(ProgramText, EveryFileStandsInItOnce) {
   Features features = all_features();
   features.light_planes = {"emission"};

@@ -69,13 +69,24 @@ TEST(ProgramTokens, AnotherLayoutOfAKernelFileChangesNone) {
   }
 }
 
+/// They are in no program (host.h), and the formatter may break their literals.
+std::string without_host_parts(std::string_view text) {
+  constexpr std::string_view k_start = "#ifdef DS_HOOK_HOST\n", k_end = "#endif\n";
+  std::string kept;
+  for (std::size_t at = text.find(k_start); at != text.npos; at = text.find(k_start)) {
+    kept += text.substr(0, at);
+    text.remove_prefix(text.find(k_end, at) + k_end.size());
+  }
+  return kept + std::string(text);
+}
+
 TEST(ProgramTokens, TheFormatterChangesNone) {
   if (std::system("clang-format-14 --version > /dev/null 2>&1") != 0)
     GTEST_SKIP() << "no clang-format-14";
   const TemporaryFolder folder;
   const std::string out = folder.path() / "out.c", in = folder.path() / "in.c";
   for (const EmbeddedFile& file : std::span(k_embedded_files, k_embedded_file_count)) {
-    const std::string text(file.text);
+    const std::string text = without_host_parts(file.text);
     write_file_atomic(in, std::string_view(text));
     for (const char* style : {"{BasedOnStyle: LLVM, ColumnLimit: 60, SortIncludes: false}",
                               "{BasedOnStyle: GNU, ColumnLimit: 140, SortIncludes: false}"}) {

@@ -4,7 +4,9 @@
 #include "tests/tracer/kernels/chi_square.h"
 #include "tracer/device/scene_pack.h"
 #include "tracer/kernels/all_nodes.h"
+#include "tracer/kernels/lists.h"
 #include "tracer/render/images.h"
+#include "tracer/scene/type_tables.h"
 
 #include <gtest/gtest.h>
 
@@ -227,9 +229,9 @@ TEST(SunLight, IsAUniformDisc) {
     Scene scene = lit_scene();
     scene.lights.push_back(pictures::sun_light({0.3f, -0.4f, 0.7f}, degrees, {5, 5, 5}));
     const PackedLight light(scene);
-    const double one_minus_cos = 1 - double{scene.lights[0].cos_total};
-    const real3 centre =
-        vec(scene.lights[0].direction.x, scene.lights[0].direction.y, scene.lights[0].direction.z);
+    const double one_minus_cos = 1 - double{*light_value(scene.lights[0], "cos_total")};
+    const Vec3 towards = light_vector(scene.lights[0], "direction");
+    const real3 centre = vec(towards.x, towards.y, towards.z);
     const Frame frame = frame_around(centre);
     std::vector<double> counts(128), expected(128, 100000 / 128.0);
     std::mt19937 random(2);
@@ -311,6 +313,34 @@ TEST(MeshLight, ItsPdfIntegratesToItsSolidAngle) {
               0.005 / (0.005 + std::sqrt(2 * 2 * (2 * 2 + 0.5 * 0.5)) / 2), 4e-4);
   EXPECT_EQ(mesh_sample(light.tables(), PackedLight::at, vec(0, 0, 5), {0.2f, 0.2f}).pdf,
             0);  // from behind
+}
+
+TEST(UnmetLights, AreFoundByTheirSamplesAlone) {
+  // Nothing else finds them: a sample that were weighed against the BSDF's would lose light.
+  const auto check = [](std::string_view prefix, auto sample) {
+    Scene scene = lit_scene();
+    pictures::add_light(scene, prefix);
+    const PackedLight light(scene);
+    std::mt19937 random(8);
+    int lit = 0;
+    for (int i = 0; i < 1000; ++i) {
+      const LightSample s = sample(light.tables(), PackedLight::at, vec(0.1f, -0.2f, 0),
+                                   real2{unit_interval(static_cast<uint>(random())),
+                                         unit_interval(static_cast<uint>(random()))});
+      ASSERT_TRUE(s.pdf >= 0) << prefix;
+      if (s.pdf == 0) continue;
+      ++lit;
+      EXPECT_TRUE(s.dirac) << prefix;
+      EXPECT_EQ(s.pdf, 1) << prefix;
+      EXPECT_NEAR(dot(s.wi, s.wi), 1, 1e-6f) << prefix;
+      EXPECT_GT(s.wi.z, 0) << prefix;
+    }
+    EXPECT_GT(lit, 500) << prefix;
+  };
+#define DS_CHECK(sdl_name, prefix) \
+  check(#prefix, [](auto... arguments) { return prefix##_sample(arguments...); });
+  DS_UNMET_LIGHTS(DS_CHECK)
+#undef DS_CHECK
 }
 
 TEST(UniformTriangle, IsUniform) {

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/tracer/scene/sdl_files_for_tests.h"
 #include "tracer/scene/sdl_math.h"
+#include "tracer/scene/sdl_parameters.h"
+#include "tracer/scene/type_tables.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 // The expected values were measured in LuxCore 2.11.2 (pyluxcore, PATHCPU, SOBOL, film output RGB,
 // filter NONE): a white matte plane at z = 0 under one light, path depth 1, seen from above at its
@@ -84,10 +88,10 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Spot, ConeAngleIsHalfTheConeAndTheFalloffItsRim) {
   const Light light =
       light_of("type = spot\nposition = 0 0 2\ntarget = 0 0 0\nconeangle = 30\nconedeltaangle = 5");
-  EXPECT_NEAR(double{light.cos_total}, std::cos(portable::radians(30)), 1e-7);
-  EXPECT_NEAR(double{light.cos_falloff}, std::cos(portable::radians(25)), 1e-7);
-  EXPECT_EQ(light.position, (Vec3{0, 0, 2}));
-  EXPECT_EQ(light.direction, (Vec3{0, 0, -1}));
+  EXPECT_NEAR(double{*light_value(light, "cos_total")}, std::cos(portable::radians(30)), 1e-7);
+  EXPECT_NEAR(double{*light_value(light, "cos_falloff")}, std::cos(portable::radians(25)), 1e-7);
+  EXPECT_EQ(light_vector(light, "position"), (Vec3{0, 0, 2}));
+  EXPECT_EQ(light_vector(light, "direction"), (Vec3{0, 0, -1}));
   // LuxCore's plane at the angle from the axis, lamp 2 m above it: irradiance. It fixes the formula
   // in scene.h.
   struct Rim {
@@ -97,8 +101,10 @@ TEST(Spot, ConeAngleIsHalfTheConeAndTheFalloffItsRim) {
   for (const Rim rim :
        {Rim{10, 0.24246386}, Rim{24, 0.20864305}, Rim{26, 0.08843275}, Rim{27.5, 0.01448597}}) {
     const double c = std::cos(portable::radians(rim.angle_deg));
-    const double edge = double{light.cos_falloff} - double{light.cos_total};
-    const double falloff = std::pow(std::fmin((c - double{light.cos_total}) / edge, 1), 4);
+    const double edge =
+        double{*light_value(light, "cos_falloff")} - double{*light_value(light, "cos_total")};
+    const double falloff =
+        std::pow(std::fmin((c - double{*light_value(light, "cos_total")}) / edge, 1), 4);
     const double irradiance = double{light.color.x} * falloff / c * (c * c * c / 4);
     EXPECT_NEAR(irradiance / rim.irradiance, 1, 1e-3) << rim.angle_deg;
   }
@@ -106,24 +112,26 @@ TEST(Spot, ConeAngleIsHalfTheConeAndTheFalloffItsRim) {
 
 TEST(Spot, ASharpEdgeHasAWidth) {
   const Light light = light_of("type = spot\ntarget = 0 0 -1\nconeangle = 40\nconedeltaangle = 0");
-  EXPECT_GT(light.cos_falloff, light.cos_total);
-  EXPECT_NEAR(light.cos_falloff, light.cos_total, 1e-7);
+  const float total = *light_value(light, "cos_total"),
+              falloff = *light_value(light, "cos_falloff");
+  EXPECT_GT(falloff, total);
+  EXPECT_NEAR(falloff, total, 1e-7);
 }
 
 TEST(Lights, TransformationIsColumnByColumn) {
   const Light point =
       light_of("type = point\nposition = 1 0 0\ntransformation = 0 1 0 0 -1 0 0 0 0 0 1 0 5 6 7 1");
-  EXPECT_EQ(point.position, (Vec3{5, 7, 7}));
+  EXPECT_EQ(light_vector(point, "position"), (Vec3{5, 7, 7}));
   const Light spot =
       light_of("type = spot\ntarget = 1 0 0\ntransformation = 0 1 0 0 -1 0 0 0 0 0 1 0 5 6 7 1");
-  EXPECT_EQ(spot.position, (Vec3{5, 6, 7}));
-  EXPECT_EQ(spot.direction, (Vec3{0, 1, 0}));
+  EXPECT_EQ(light_vector(spot, "position"), (Vec3{5, 6, 7}));
+  EXPECT_EQ(light_vector(spot, "direction"), (Vec3{0, 1, 0}));
 }
 
 TEST(ConstantInfinite, RadianceIsGainTimesColour) {
   // pi * radiance = 1.2567 2.5134 5.0268
   const Light light = light_of("type = constantinfinite\ncolor = .2 .4 .8\ngain = 2 2 2");
-  EXPECT_EQ(light.kind, LightKind::constant_infinite);
+  EXPECT_EQ(type_of(light).kernel_prefix, "constant_infinite");
   expect_near(light.color, {0.4, 0.8, 1.6}, 1e-6);
 }
 
@@ -141,7 +149,7 @@ TEST(Infinite, OrientationIsLuxCores) {
       "scene.lights.l.type = infinite\nscene.lights.l.file = map.exr\nscene.lights.l.gamma = 1\n";
   const Scene scene = folder.environment(base + "scene.lights.l.gain = 2 3 4\n");
   const Light& light = scene.lights.at(0);
-  EXPECT_EQ(light.kind, LightKind::infinite);
+  EXPECT_EQ(type_of(light).kernel_prefix, "infinite");
   EXPECT_EQ(light.color, (Vec3{2, 3, 4}));
   ASSERT_EQ(light.image, 0);
   EXPECT_EQ(scene.images[0].gamma, 1);
@@ -166,6 +174,57 @@ TEST(Infinite, OrientationIsLuxCores) {
   EXPECT_NE(folder.environment_error(
                 base + "scene.lights.l.transformation = 2 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n"),
             "");
+}
+
+/// A value that is not the default.
+std::string other_value(const LightInput& input) {
+  if (input.value == LightValue::number)
+    return fmt::format("{}", std::stod(std::string(input.default_value)) * 0.5);
+  return "0.3 0.5 0.7";
+}
+
+TEST(Lights, EachIsReadFromItsTable) {
+  const SdlFolder folder;
+  int read = 0;
+  for (const LightType& type : light_types()) {
+    if (type.name.empty() || (type.host.made_by & kernels::k_host_panorama) != 0) continue;
+    const std::string plain = fmt::format("scene.lights.l.type = {}\n", type.name);
+    const auto canonical = [&](const std::string& more) {
+      return canonical_environment(folder.environment(plain + more));
+    };
+    const Light light = folder.environment(plain).lights.at(0);
+    EXPECT_EQ(&type_of(light), &type);
+    EXPECT_NE(canonical("scene.lights.l.gain = 2 2 2\n"), canonical("")) << type.name;
+    const SdlTypeRow* row = find_type(light_section(), type.name);
+    ASSERT_NE(row, nullptr) << type.name;
+    EXPECT_EQ(row->help, header_comment("lights", type.kernel_prefix));
+    for (const LightInput& input : type.host.inputs) {
+      EXPECT_NE(canonical("").find(fmt::format("lights.l.{} = ", input.name)), std::string::npos)
+          << canonical("");
+      if (input.default_value.empty()) continue;
+      ++read;
+      const SdlParameter* parameter = find_parameter(light_section(), row, input.name);
+      ASSERT_NE(parameter, nullptr) << type.name << " " << input.name;
+      EXPECT_EQ(parameter->help, input.help);
+      const std::string line = fmt::format("scene.lights.l.{} = ", input.name);
+      EXPECT_EQ(canonical(line + std::string(input.default_value) + "\n"), canonical(""))
+          << type.name << " " << input.name;
+      EXPECT_NE(canonical(line + other_value(input) + "\n"), canonical(""))
+          << type.name << " " << input.name;
+      // Points and directions are turned and moved with the light.
+      if (input.value == LightValue::point || input.value == LightValue::direction) {
+        const Light turned = folder
+                                 .environment(plain + line +
+                                              "0 0 2\nscene.lights.l.transformation = "
+                                              "0 1 0 0 -1 0 0 0 0 0 -1 0 5 6 7 1\n")
+                                 .lights.at(0);
+        EXPECT_EQ(light_vector(turned, input.name),
+                  input.value == LightValue::point ? (Vec3{5, 6, 5}) : (Vec3{0, 0, -1}))
+            << type.name << " " << input.name;
+      }
+    }
+  }
+  EXPECT_GE(read, 4);
 }
 
 struct EmissionCase {

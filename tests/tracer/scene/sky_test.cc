@@ -3,6 +3,7 @@
 #include "tracer/base/luminance.h"
 #include "tracer/scene/sdl_math.h"
 #include "tracer/scene/sky_model.h"
+#include "tracer/scene/type_tables.h"
 
 #include <gtest/gtest.h>
 
@@ -162,7 +163,7 @@ TEST(Sky, Sky2BecomesAnInfiniteLight) {
       folder.environment("scene.lights.s.dir = 0 1 1\nscene.lights.s.gain = 0.5 0.5 0.25\n");
   ASSERT_EQ(scene.lights.size(), 1u);
   const Light& light = scene.lights[0];
-  EXPECT_EQ(light.kind, LightKind::infinite);
+  EXPECT_EQ(type_of(light).kernel_prefix, "infinite");
   EXPECT_EQ(light.color, (Vec3{0.5f, 0.5f, 0.25f}));
   EXPECT_EQ(light.light_to_world, Mat4{});
   ASSERT_EQ(light.image, 0);

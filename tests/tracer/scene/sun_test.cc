@@ -4,6 +4,7 @@
 #include "tracer/scene/sdl_math.h"
 #include "tracer/scene/spectrum.h"
 #include "tracer/scene/sun_model.h"
+#include "tracer/scene/type_tables.h"
 
 #include <gtest/gtest.h>
 
@@ -74,9 +75,9 @@ TEST(Sun, IrradianceDoesNotDependOnTheDiscsSize) {
         relsize);
     ASSERT_EQ(scene.lights.size(), 1u);
     const Light& light = scene.lights[0];
-    EXPECT_EQ(light.kind, LightKind::sun);
-    EXPECT_NEAR(light.direction.x, std::sqrt(0.5), 1e-7);
-    const double cosine = double{light.cos_total};
+    EXPECT_EQ(type_of(light).kernel_prefix, "sun");
+    EXPECT_NEAR(light_vector(light, "direction").x, std::sqrt(0.5), 1e-7);
+    const double cosine = double{*light_value(light, "cos_total")};
     const double projected = k_pi * (1 - cosine * cosine) * std::sqrt(0.5);
     for (int band = 0; band < 3; ++band)
       EXPECT_NEAR(double{light.color[band]} * projected / k_measured_irradiance[band], 1, 0.005);

@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same radiance from everywhere. Never sampled (its selection probability is 0): directions
-// chosen by the BSDF find it as well as any could, and cost no shadow ray.
+// The same light from everywhere.
+//
+// Never sampled (its selection probability is 0): directions chosen by the BSDF find it as well as
+// any could, and cost no shadow ray.
 #pragma once
 
 #include "tracer/kernels/light.h"
+
+#ifdef DS_HOOK_HOST
+inline constexpr LightInput constant_infinite_inputs[] = {
+    {"color", LightValue::color, "1 1 1", "colour, times gain"}};
+inline constexpr LightOnHost constant_infinite_on_host = {constant_infinite_inputs};
+#endif
 
 enum { constant_infinite_radiance = 0 /* 3 */ };
 DS_TRAITS(constant_infinite, k_trait_beyond);

@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lat-long image at infinity, looked up bilinearly: round in longitude, held at the poles.
-// Sampled in proportion to the luminance of the very function looked up: its domain is cut into
-// cells between texel centres (width columns, height + 1 rows, the first and last of half height),
-// a cell's weight is the mean of its four corners times the sine of its polar angle, so no
-// direction with radiance has a pdf of 0. A cell is found by its row's cumulative table, then the
-// column's, which keeps the samples' stratification.
+// A lat-long picture all around: Z up, the zenith in the top row. As in LuxCore it is seen mirrored
+// from inside; transformation = 1 0 0 0  0 -1 0 0  0 0 1 0  0 0 0 1 turns that round.
+//
+// Looked up bilinearly: round in longitude, held at the poles. Sampled in proportion to the
+// luminance of the very function looked up: its domain is cut into cells between texel centres
+// (width columns, height + 1 rows, the first and last of half height), a cell's weight is the mean
+// of its four corners times the sine of its polar angle, so no direction with radiance has a pdf of
+// 0. A cell is found by its row's cumulative table, then the column's, which keeps the samples'
+// stratification.
 #pragma once
 
 #include "tracer/kernels/light.h"
+
+#ifdef DS_HOOK_HOST
+inline constexpr LightInput infinite_inputs[] = {{"color", LightValue::color}};
+inline constexpr LightOnHost infinite_on_host = {infinite_inputs,
+                                                 k_host_reads | k_host_tables | k_host_panorama};
+#endif
 
 enum {
   infinite_width = 0,  ///< texels, bits of an unsigned number

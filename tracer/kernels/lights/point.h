@@ -1,8 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// A point that shines equally in all directions.
+// A point that shines alike to all sides.
 #pragma once
 
 #include "tracer/kernels/light.h"
+
+#ifdef DS_HOOK_HOST
+inline constexpr LightInput point_inputs[] = {
+    {"color", LightValue::color, "1 1 1", "colour, times gain"},
+    {"position", LightValue::point, "0 0 0", "metres"}};
+inline double point_power(double luminance, const float* inputs, double scene_radius) {
+  return 4 * std::numbers::pi * luminance;
+}
+inline constexpr LightOnHost point_on_host = {point_inputs, k_host_reads, point_power};
+#endif
 
 enum { point_intensity = 0 /* 3: W/sr */, point_position = 3 /* 3: metres */ };
 DS_TRAITS(point, k_trait_sampled | k_trait_small);
