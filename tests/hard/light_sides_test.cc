@@ -97,5 +97,17 @@ TEST(LightSides, ASkyFoundByOneStrategyAndByTwo) {
     }
 }
 
+TEST(LightSides, NoMirrorShowsWhatNoPathMeets) {
+  for (const char* light : {"sharpdistant"}) {
+    Picture p = plate("mirror", true, 16);
+    p.scene.lights.push_back(pictures::light_of_table(light));
+    // The mirrored view runs straight into it.
+    const Vec3d eye = normalized(p.camera.position);
+    set_light_value(p.scene.lights[0], "direction", to_float(Vec3d{eye.x, eye.y, -eye.z}));
+    for (const hard::Way& way : hard::full_program_ways())
+      EXPECT_EQ(hard::mean_of(hard::trace(p, way)), 0) << light << ", " << way.name();
+  }
+}
+
 }  // namespace
 }  // namespace ds

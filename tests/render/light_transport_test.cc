@@ -3,6 +3,7 @@
 // plane.
 #include "tests/render/pictures.h"
 #include "tracer/scene/sdl.h"
+#include "tracer/scene/type_tables.h"
 
 #include <gtest/gtest.h>
 
@@ -152,6 +153,17 @@ TEST(DirectLight, SunOnAPlane) {
     expect_direct_light(
         p, view, 48, [&](Vec3d) { return expected; }, 3e-3);
   }
+}
+
+TEST(DirectLight, SharpdistantOnAPlane) {
+  const FromAbove view;
+  Picture p = above_plane(view, {0.5f, 0.5f, 0.5f});
+  Light light = make_light("sharpdistant");
+  light.color = {3, 3, 3};
+  const Vec3d way = normalized(Vec3d{0.4, 0.3, -0.5});
+  set_light_value(light, "direction", to_float(way));
+  p.scene.lights.push_back(light);
+  expect_direct_light(p, view, 8, [&](Vec3d) { return 3 * -way.z; });
 }
 
 /// Lambert's formula: irradiance at `at`, normal +z, from a polygon above the horizon of
