@@ -97,8 +97,31 @@ TEST(LightSides, ASkyFoundByOneStrategyAndByTwo) {
     }
 }
 
+TEST(LightSides, AConeThatOneStrategyFindsAndOneThatTwoDo) {
+  // A distant light is found by next-event estimation alone, a sun by scattered rays as well.
+  Light cone = make_light("distant");
+  cone.color = {2, 2, 2};
+  const Vec3d towards = normalized(Vec3d{-0.4, 0.5, 1});
+  set_light_value(cone, "direction", to_float(-towards));
+  *light_value(cone, "theta") = 25;
+  for (const char* material : {"matte", "glossy2", "metal2", "roughglass"}) {
+    Picture one = plate(material, true, 64);
+    Picture two = one;
+    one.scene.lights.push_back(cone);
+    two.scene.lights.push_back(pictures::sun_light(to_float(towards), 25, {2, 2, 2}));
+    for (const hard::Way& way : hard::full_program_ways()) {
+      const pictures::Estimate a = hard::estimate(one, way, 16);
+      const pictures::Estimate b = hard::estimate(two, way, 16, 1000);
+      EXPECT_NEAR(a.mean, b.mean, 4.5 * std::hypot(a.error, b.error) + 1e-5 * a.mean)
+          << material << ", " << way.name();
+      EXPECT_GT(a.mean, 0.01) << material;
+      EXPECT_LT(a.error + b.error, 0.02 * a.mean) << material;
+    }
+  }
+}
+
 TEST(LightSides, NoMirrorShowsWhatNoPathMeets) {
-  for (const char* light : {"sharpdistant"}) {
+  for (const char* light : {"sharpdistant", "distant"}) {
     Picture p = plate("mirror", true, 16);
     p.scene.lights.push_back(pictures::light_of_table(light));
     // The mirrored view runs straight into it.

@@ -166,6 +166,23 @@ TEST(DirectLight, SharpdistantOnAPlane) {
   expect_direct_light(p, view, 8, [&](Vec3d) { return 3 * -way.z; });
 }
 
+TEST(DirectLight, DistantOnAPlane) {
+  const FromAbove view;
+  for (const double theta_deg : {0.5, 10.0, 40.0}) {
+    Picture p = above_plane(view, {0.5f, 0.5f, 0.5f});
+    Light light = make_light("distant");
+    light.color = {3, 3, 3};
+    const Vec3d way = normalized(Vec3d{0.4, 0.3, -0.8});
+    set_light_value(light, "direction", to_float(way));
+    *light_value(light, "theta") = static_cast<float>(theta_deg);
+    p.scene.lights.push_back(light);
+    // The cone is wholly above the plane: as the sun's.
+    const double sine = std::sin(theta_deg * k_pi / 180);
+    expect_direct_light(
+        p, view, 48, [&](Vec3d) { return 3 * k_pi * sine * sine * -way.z; }, 1e-4);
+  }
+}
+
 /// Lambert's formula: irradiance at `at`, normal +z, from a polygon above the horizon of
 /// radiance 1.
 double polygon_irradiance(Vec3d at, const std::vector<Vec3d>& corners) {

@@ -31,10 +31,11 @@
   X("hitpointalpha", hitpointalpha, HITPOINTALPHA)
 
 /// Those that no path meets, and those that lie beyond the scene, which paths that leave it meet.
-#define DS_UNMET_LIGHTS(X) \
-  X("point", point)        \
-  X("spot", spot)          \
-  X("sharpdistant", sharpdistant)
+#define DS_UNMET_LIGHTS(X)        \
+  X("point", point)               \
+  X("spot", spot)                 \
+  X("sharpdistant", sharpdistant) \
+  X("distant", distant)
 #define DS_BEYOND_LIGHTS(X)                \
   X("constantinfinite", constant_infinite) \
   X("infinite", infinite)                  \
