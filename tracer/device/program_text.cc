@@ -310,6 +310,13 @@ Features all_features() {
   return f;
 }
 
+Features full_features(const Features& own) {
+  constexpr int k_usual_depth = 8;  // one program serves all scenes that are not deeper
+  Features all = all_features();
+  all.chooser_depth = std::max(own.chooser_depth, k_usual_depth);
+  return all;
+}
+
 std::string assemble(const std::string& definitions, std::span<const std::string> paths) {
   Assembly assembly(definitions);
   for (const std::string& path : paths)

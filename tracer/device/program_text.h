@@ -49,6 +49,9 @@ std::vector<bool> materials_with(const Scene& scene, unsigned traits);
 Features features_of(const Scene& scene, const Camera& camera);
 /// Everything there is, in one program: the same bits, later.
 Features all_features();
+/// The same for a scene with these features; materials may choose among materials that choose, as deep as
+/// the scene has it.
+Features full_features(const Features& own);
 
 /// Source of the path tracer for these features: definitions, then every kernel file it needs,
 /// once, in order of inclusion. The lane count is not in it (it is the build option DS_LANES: it

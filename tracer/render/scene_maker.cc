@@ -47,11 +47,7 @@ void SceneMaker::pack_ahead(ReadyScene& ready) {
 
 Features SceneMaker::numbering(const Scene& scene) const {
   Features features = features_of(scene, Camera{});
-  if (full_program_) {
-    const int depth = features.chooser_depth;
-    features = all_features();
-    features.chooser_depth = depth;
-  }
+  if (full_program_) features = full_features(features);
   features.lens = false;
   return features;
 }

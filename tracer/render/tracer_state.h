@@ -57,9 +57,7 @@ struct Tracer::State {
   Features features(const Scene& of, const Camera& camera) const {
     Features own = features_of(of, camera);
     if (!options.full_program) return own;
-    Features all = all_features();
-    all.chooser_depth = own.chooser_depth;
-    return all;
+    return full_features(own);
   }
 
   TracerOptions options;
