@@ -190,20 +190,18 @@ void read_material_node(SdlNode node) {
 }
 
 std::vector<SdlParameter> emission_parameters() {
-  constexpr NumberRange k_not_negative{.least = 0};
+  constexpr NumberRange k_from_0{.least = 0};
   return concatenated(
       {{{"emission", SdlType::color_input, "0",
-         "radiance; what emits is a light. A texture must be a constant", k_not_negative},
-        {"emission.gain", SdlType::color, "1 1 1", "factor on emission", k_not_negative},
+         "radiance; what emits is a light. A texture must be a constant", k_from_0},
+        {"emission.gain", SdlType::color, "1 1 1", "factor on emission", k_from_0},
         {"emission.gain.normalizebycolor", SdlType::flag, "0",
          "divide by the emission's luminance"}},
        temperature_parameters("emission.temperature"),
        {{"emission.power", SdlType::number, "0",
-         "watts of each object; with an efficiency above 0 it replaces the radiance",
-         k_not_negative},
-        {"emission.efficiency", SdlType::number, "0", "lumens a watt, as LuxCore has it",
-         k_not_negative},
-        {"emission.efficency", SdlType::number, "0", "LuxCore's misspelling of it", k_not_negative},
+         "watts of each object; with an efficiency above 0 it replaces the radiance", k_from_0},
+        {"emission.efficiency", SdlType::number, "0", "lumens a watt, as LuxCore has it", k_from_0},
+        {"emission.efficency", SdlType::number, "0", "LuxCore's misspelling of it", k_from_0},
         {"emission.normalizebycolor", SdlType::flag, "1",
          "power is the same whatever the colour"}}});
 }
