@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -100,6 +101,10 @@ struct DatasetRecord {
 /// or has a control character or backslash (checksums.xxh128 has one line a path, and `xxhsum -c`
 /// reads no escapes).
 void check_manifest_path(std::string_view path);
+
+/// The lines of a checksum file, "<32 hex digits>  <path>", by path. Throws Error(io) where it cannot be
+/// read, Error(asset) for a line that is none.
+std::map<std::string, Hash128> read_checksum_file(const std::filesystem::path& file);
 
 /// The line without its line break. Numbers must be finite and texts UTF-8: Error(asset) otherwise.
 std::string to_json_line(const ImageRecord& image);

@@ -5,6 +5,8 @@
 #include "tracer/base/files.h"
 
 #include <algorithm>
+#include <optional>
+#include <sstream>
 #include <system_error>
 
 namespace ds {
@@ -42,6 +44,18 @@ void check_manifest_path(std::string_view path) {
          "backslash, got {:?}",
          path);
   }
+}
+
+std::map<std::string, Hash128> read_checksum_file(const fs::path& file) {
+  std::map<std::string, Hash128> sums;
+  std::istringstream lines(read_text_file(file));
+  for (std::string line; std::getline(lines, line);) {
+    const std::optional<Hash128> hash = Hash128::from_hex(line.substr(0, 32));
+    if (!hash || line.compare(32, 2, "  ") != 0)
+      fail(ErrorKind::asset, "a line is no checksum: {}", line);
+    sums.emplace(line.substr(34), *hash);
+  }
+  return sums;
 }
 
 ManifestWriter::ManifestWriter(const fs::path& folder)

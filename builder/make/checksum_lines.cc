@@ -6,7 +6,6 @@
 #include "tracer/base/hash_stream.h"
 
 #include <algorithm>
-#include <sstream>
 #include <system_error>
 #include <vector>
 
@@ -22,18 +21,12 @@ std::optional<std::map<std::string, Hash128>> read_checksums(VerifyResult& resul
     result.findings.push_back({Finding::Kind::missing, file, "the file is missing", ""});
     return std::nullopt;
   }
-  std::map<std::string, Hash128> sums;
-  std::istringstream lines(read_text_file(folder / file));
-  for (std::string line; std::getline(lines, line);) {
-    const std::optional<Hash128> hash = Hash128::from_hex(line.substr(0, 32));
-    if (!hash || line.compare(32, 2, "  ") != 0) {
-      result.findings.push_back(
-          {Finding::Kind::manifest, file, "a line is no checksum: " + line, ""});
-      return std::nullopt;
-    }
-    sums.emplace(line.substr(34), *hash);
+  try {
+    return read_checksum_file(folder / file);
+  } catch (const Error& damaged) {
+    result.findings.push_back({Finding::Kind::manifest, file, damaged.what(), ""});
+    return std::nullopt;
   }
-  return sums;
 }
 
 void compare_with_checksums(VerifyResult& result, const fs::path& folder,

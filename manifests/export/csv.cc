@@ -33,13 +33,13 @@ class Csv : public Exporter {
       to_.place(file_of(image, kind), path);
       fields[kind + "_file"] = path;
     }
-    std::string head, row;
+    std::vector<std::string> head, row;
     for (const auto& [name, value] : fields.items()) {
-      head += (head.empty() ? "" : ",") + cell(name);
-      row += (row.empty() && name == fields.items().begin().key() ? "" : ",") + cell(value);
+      head.push_back(cell(name));
+      row.push_back(cell(value));
     }
-    if (!std::exchange(begun_, true)) table_.write(head + "\n");
-    table_.write(row + "\n");
+    if (!std::exchange(begun_, true)) table_.write(fmt::format("{}\n", fmt::join(head, ",")));
+    table_.write(fmt::format("{}\n", fmt::join(row, ",")));
   }
   void finish() override { table_.close(); }
 

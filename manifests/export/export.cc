@@ -16,7 +16,6 @@
 #include <array>
 #include <fstream>
 #include <set>
-#include <sstream>
 #include <string_view>
 
 namespace ds {
@@ -61,13 +60,9 @@ void visit_images(const fs::path& folder, const Visit& visit) {
 /// Labels, poses and splits stand in the manifest alone: what was edited there is not to be handed on.
 void check_manifest(const fs::path& folder) {
   constexpr const char* k_sums = "manifest/checksums.xxh128";
-  std::istringstream lines(read_text_file(folder / k_sums));
-  constexpr std::size_t k_before_path = 34;
-  std::map<std::string, std::string> sums;
-  for (std::string line; std::getline(lines, line);)
-    if (line.size() > k_before_path) sums[line.substr(k_before_path)] = line.substr(0, 32);
+  const std::map<std::string, Hash128> sums = read_checksum_file(folder / k_sums);
   for (const char* file : {k_images, "manifest/dataset.json"})
-    if (content_hash(folder / file).hex() != sums[file])
+    if (!sums.contains(file) || content_hash(folder / file) != sums.at(file))
       fail(
           ErrorKind::asset,
           "{}: is not what {} says, as after an edit, or while a build is under way; dsbuild build "

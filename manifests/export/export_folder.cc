@@ -9,8 +9,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
-#include <set>
-#include <sstream>
 #include <stdio.h>
 #include <system_error>
 #include <utility>
@@ -69,16 +67,12 @@ void check_apart(const fs::path& dataset, const fs::path& to) {
 
 /// Throws where an export that is to be replaced holds files that somebody put there.
 void check_own(const fs::path& to) {
-  std::set<std::string> own{k_export_checksums};
-  std::istringstream lines(read_text_file(to / k_export_checksums));
-  constexpr std::size_t k_before_path = 34;
-  for (std::string line; std::getline(lines, line);)
-    if (line.size() > k_before_path) own.insert(line.substr(k_before_path));
+  const std::map<std::string, Hash128> own = read_checksum_file(to / k_export_checksums);
   std::error_code error;
   for (fs::recursive_directory_iterator entry(to, error), end; !error && entry != end;
        entry.increment(error)) {
     const std::string path = entry->path().lexically_relative(to).generic_string();
-    if (!entry->is_directory(error) && !own.contains(path))
+    if (!entry->is_directory(error) && path != k_export_checksums && !own.contains(path))
       fail(ErrorKind::usage,
            "-o {}: holds {}, which no export put there and a new one would take away; move it, or "
            "export to another folder",

@@ -125,12 +125,6 @@ std::uint64_t ParquetFile::bytes() const {
 void ParquetFile::add(const json& row, const std::vector<ParquetImage>& images) {
   auto leaf = leaves_.begin();
   auto image = images.begin();
-  const auto before = [&] {
-    std::uint64_t bytes = 0;
-    for (const Leaf& one : leaves_)
-      bytes += one.values.size();
-    return bytes;
-  };
   for (const auto& [name, type] : columns_) {
     Leaf& column = *leaf++;
     if (type == ParquetType::image) {
@@ -158,7 +152,9 @@ void ParquetFile::add(const json& row, const std::vector<ParquetImage>& images) 
         column.add(element, std::exchange(first_row, false) ? 0 : 1);
     }
   }
-  bytes_in_group_ = before();
+  bytes_in_group_ = 0;
+  for (const Leaf& one : leaves_)
+    bytes_in_group_ += one.values.size();
   if (++rows_in_group_ == k_group_rows || bytes_in_group_ >= k_group_bytes) write_group();
 }
 
