@@ -106,16 +106,6 @@ Columns find_columns(const Row& header, const SourcePlace& place, Diagnostics& d
   return columns;
 }
 
-bool is_class_path(std::string_view path) {
-  if (path.empty()) return true;
-  for (;;) {
-    const std::string_view part = path.substr(0, path.find('/'));
-    if (part.empty() || part == "0" || part == "." || part == "..") return false;
-    if (part.size() == path.size()) return true;
-    path.remove_prefix(part.size() + 1);
-  }
-}
-
 }  // namespace
 
 std::vector<LabelledModel> parse_class_table(std::string_view text, const std::string& name) {
@@ -138,7 +128,7 @@ std::vector<LabelledModel> parse_class_table(std::string_view text, const std::s
                       row->size());
       continue;
     }
-    LabelledModel model{(*row)[*columns[k_name]], {(*row)[*columns[k_class]], ""}};
+    LabelledModel model{(*row)[*columns[k_name]], {(*row)[*columns[k_class]], ""}, place};
     if (columns[k_split]) model.label.split = (*row)[*columns[k_split]];
     if (model.model.empty()) diagnostics.add(place, "the name is empty");
     if (!is_class_path(model.label.class_path))

@@ -155,7 +155,7 @@ class Parser {
 
   void add_model(const std::string& model) {
     if (result_.classes.empty()) {
-      diagnostics_.add(here(), "model {} stands before the first class", model);
+      if (!lost_class_) diagnostics_.add(here(), "model {} stands before the first class", model);
       return;
     }
     ModelClass& owner = result_.classes.back();
@@ -246,6 +246,16 @@ void check_disjoint(const Classification& train, const Classification& test) {
 
 }  // namespace
 
+bool is_class_path(std::string_view path) {
+  if (path.empty()) return true;
+  for (;;) {
+    const std::string_view part = path.substr(0, path.find('/'));
+    if (part.empty() || part == "0" || part == "." || part == "..") return false;
+    if (part.size() == path.size()) return true;
+    path.remove_prefix(part.size() + 1);
+  }
+}
+
 std::string Classification::path(int class_index) const {
   std::string path;
   for (int i = class_index; i >= 0; i = classes[static_cast<std::size_t>(i)].parent) {
@@ -272,8 +282,9 @@ std::vector<LabelledModel> labelled_models(const Classification& from, const std
   std::vector<LabelledModel> models;
   for (std::size_t i = 0; i < from.classes.size(); ++i) {
     const std::string path = from.path(static_cast<int>(i));
-    for (const std::string& model : from.classes[i].models)
-      models.push_back({model, {path, split}});
+    const ModelClass& owner = from.classes[i];
+    for (std::size_t m = 0; m < owner.models.size(); ++m)
+      models.push_back({owner.models[m], {path, split}, {from.file, owner.model_lines[m], 0}});
   }
   return models;
 }
@@ -291,29 +302,28 @@ Labels::Labels(const std::vector<LabelledModel>& models) {
 
 bool Labels::has_splits() const {
   return std::any_of(sorted_.begin(), sorted_.end(),
-                     [](const auto& entry) { return !entry.second.split.empty(); });
+                     [](const auto& entry) { return !entry.label.split.empty(); });
 }
 
 std::vector<std::string> Labels::class_paths() const {
   std::set<std::string> paths;
-  for (const auto& [model, label] : sorted_)
-    for (std::string path = label.class_path; !path.empty() && paths.insert(path).second;)
+  for (const LabelledModel& entry : sorted_)
+    for (std::string path = entry.label.class_path; !path.empty() && paths.insert(path).second;)
       path.resize(path.rfind('/') == path.npos ? 0 : path.rfind('/'));
   return {paths.begin(), paths.end()};
 }
 
 void Labels::add(const std::vector<LabelledModel>& models) {
-  for (const auto& [model, label] : models)
-    sorted_.emplace_back(model, label);
+  sorted_.insert(sorted_.end(), models.begin(), models.end());
   std::sort(sorted_.begin(), sorted_.end(),
-            [](const auto& a, const auto& b) { return a.first < b.first; });
+            [](const auto& a, const auto& b) { return a.model < b.model; });
 }
 
 std::optional<std::size_t> Labels::index_of(std::string_view key) const {
   const auto at =
       std::lower_bound(sorted_.begin(), sorted_.end(), key,
-                       [](const auto& entry, std::string_view k) { return entry.first < k; });
-  if (at == sorted_.end() || at->first != key) return std::nullopt;
+                       [](const auto& entry, std::string_view k) { return entry.model < k; });
+  if (at == sorted_.end() || at->model != key) return std::nullopt;
   return static_cast<std::size_t>(at - sorted_.begin());
 }
 
@@ -341,7 +351,7 @@ std::optional<std::size_t> Labels::find_index(std::string_view model_name) const
 
 std::optional<ModelLabel> Labels::find(std::string_view model_name) const {
   const auto index = find_index(model_name);
-  return index ? std::optional(sorted_[*index].second) : std::nullopt;
+  return index ? std::optional(label(*index)) : std::nullopt;
 }
 
 UnsharedClasses unshared_classes(const std::optional<Classification>& train,

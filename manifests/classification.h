@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tracer/base/error.h"
+
 #include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace ds {
@@ -46,6 +47,9 @@ Classification parse_classification(std::string_view text, const std::string& na
 /// `file` stands in messages as given. Throws Error(io) where it cannot be read.
 Classification read_classification(const std::filesystem::path& file);
 
+/// Whether it is names with / between, none of them empty, 0, . or ..; "" is, too: no class.
+bool is_class_path(std::string_view path);
+
 struct ModelLabel {
   std::string class_path;  ///< "vehicle/car"; "" for none
   std::string split;       ///< "train" or "test"; "" for none
@@ -56,6 +60,7 @@ struct ModelLabel {
 struct LabelledModel {
   std::string model;
   ModelLabel label;
+  SourcePlace place;  ///< where the list says so; no file where no list does
 };
 /// Those of a class file, all in one split.
 std::vector<LabelledModel> labelled_models(const Classification& from, const std::string& split);
@@ -90,9 +95,10 @@ class Labels {
   /// All entries that mean the file: the one that `find` uses, and then those it goes before.
   std::vector<std::size_t> find_all(std::string_view model_name) const;
   std::size_t size() const { return sorted_.size(); }
-  /// What the class file calls the entry of that index.
-  const std::string& name(std::size_t index) const { return sorted_.at(index).first; }
-  const ModelLabel& label(std::size_t index) const { return sorted_.at(index).second; }
+  /// What the list says in the entry of that index.
+  const LabelledModel& entry(std::size_t index) const { return sorted_.at(index); }
+  const std::string& name(std::size_t index) const { return entry(index).model; }
+  const ModelLabel& label(std::size_t index) const { return entry(index).label; }
   /// Whether any entry has a split.
   bool has_splits() const;
   /// The paths of all classes that entries have, and of those above them, sorted, each once.
@@ -102,7 +108,7 @@ class Labels {
   void add(const std::vector<LabelledModel>& models);
   std::optional<std::size_t> index_of(std::string_view key) const;
 
-  std::vector<std::pair<std::string, ModelLabel>> sorted_;  // by key
+  std::vector<LabelledModel> sorted_;  // by model
 };
 
 /// The paths of all classes of both files and of their parents, sorted, each once.

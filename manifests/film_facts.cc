@@ -91,7 +91,7 @@ FilmFacts film_facts_from_text(const std::string& text) {
   try {
     return film_facts_from(json::parse(text));
   } catch (const json::exception& error) {
-    fail(ErrorKind::asset, "no facts of a film: {}", error.what());
+    fail(ErrorKind::asset, "no facts of a film: {}", json_fault(error));
   }
 }
 

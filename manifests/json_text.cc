@@ -104,4 +104,11 @@ std::string canonical_json(const nlohmann::json& value, int indent) {
   return text;
 }
 
+std::string json_fault(const nlohmann::json::exception& error) {
+  const std::string text = error.what();  // "[json.exception.KIND.NUMBER] ..."
+  const std::size_t kind_end = text.find("] ");
+  return text.starts_with("[json.exception.") && kind_end != text.npos ? text.substr(kind_end + 2)
+                                                                       : text;
+}
+
 }  // namespace ds

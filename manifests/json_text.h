@@ -13,4 +13,7 @@ namespace ds {
 /// finite and for text that is not UTF-8.
 std::string canonical_json(const nlohmann::json& value, int indent = 0);
 
+/// What is wrong with a JSON text, without the library's name for the kind of error.
+std::string json_fault(const nlohmann::json::exception& error);
+
 }  // namespace ds

@@ -29,10 +29,34 @@ json to_json_value(const FileRecord& file) {
           {"pixels_xxh128", file.pixels.hex()}};
 }
 
-/// null where no pixel of the picture could show the model.
-json visible_fraction(const PixelCounts& counts) {
-  if (*counts.amodal == 0) return {};
-  return static_cast<double>(*counts.model) / static_cast<double>(*counts.amodal);
+/// What follows from the counts. Null where no pixel shows the model, or could.
+void add_counted(json& line, const ImageRecord& image) {
+  const PixelCounts& counts = image.pixel_counts;
+  if (counts.left && counts.right && counts.above && counts.below)
+    line["box"] =
+        *counts.model == 0
+            ? json()
+            : json({*counts.left, *counts.above,
+                    static_cast<std::uint64_t>(image.width) - *counts.left - *counts.right,
+                    static_cast<std::uint64_t>(image.height) - *counts.above - *counts.below});
+  if (!counts.model || !counts.amodal) return;
+  const double of = static_cast<double>(*counts.amodal), seen = static_cast<double>(*counts.model);
+  line["visible_fraction"] = of == 0 ? json() : json(seen / of);
+  line["occlusion"] = of == 0 ? json() : json((of - seen) / of);
+}
+
+json to_json_value(const Box& box) {
+  return {{box.least.x, box.least.y, box.least.z}, {box.most.x, box.most.y, box.most.z}};
+}
+
+void add_pose(json& line, const ImageRecord& image) {
+  if (!image.pose) return;
+  const auto in_camera = model_to_camera(*image.pose, image.camera_to_world);
+  line["model_to_world"] = matrix(image.pose->model_to_world, 4);
+  line["model_box"] = to_json_value(image.pose->model_box);
+  line["box_m"] = to_json_value(world_box(*image.pose));
+  line["model_to_camera"] = {{"opencv", matrix(in_camera, 4)},
+                             {"opengl", matrix(to_opengl(in_camera), 4)}};
 }
 
 json to_json_value(const ImageRecord& image) {
@@ -43,6 +67,7 @@ json to_json_value(const ImageRecord& image) {
   json line{{"id", image.id},
             {"model", image.model},
             {"class_path", image.class_path},
+            {"class_id", image.class_id ? json(*image.class_id) : json()},
             {"split", image.split},
             {"material", image.material},
             {"environment", image.environment},
@@ -71,8 +96,9 @@ json to_json_value(const ImageRecord& image) {
               {"environment", parts[2].hex()},
               {"camera", parts[3].hex()},
               {"engine", parts[4].hex()}}}};
-  if (image.pixel_counts.model && image.pixel_counts.amodal)
-    line["visible_fraction"] = visible_fraction(image.pixel_counts);
+  if (!image.other_classes.empty()) line["classes"] = image.other_classes;
+  add_counted(line, image);
+  add_pose(line, image);
   return line;
 }
 
@@ -93,21 +119,29 @@ json to_json_value(const DatasetRecord& dataset) {
   json licences = json::array();
   for (const LicenceRecord& licence : dataset.licences)
     licences.push_back(to_json_value(licence));
-  json object{{"format", k_manifest_format},
-              {"name", dataset.name},
-              {"licence", dataset.licence},
-              {"recipe", dataset.recipe_text},
-              {"dsbuild_version", dataset.dsbuild_version},
-              {"seed", dataset.seed},
-              {"class_paths", dataset.class_paths},
-              {"counts", counts_object(dataset.counts)},
-              {"licences", std::move(licences)},
-              {"conventions",
-               {{"world", "right-handed, z up, metres"},
-                {"camera_to_world",
-                 "4x4, row-major, column vectors; opencv camera: x right, y down, z forward"},
-                {"intrinsics",
-                 "3x3, row-major, pixels; origin at the top left corner, pixel centres at .5"}}}};
+  json object{
+      {"format", k_manifest_format},
+      {"name", dataset.name},
+      {"licence", dataset.licence},
+      {"recipe", dataset.recipe_text},
+      {"dsbuild_version", dataset.dsbuild_version},
+      {"seed", dataset.seed},
+      {"class_paths", dataset.class_paths},
+      {"counts", counts_object(dataset.counts)},
+      {"licences", std::move(licences)},
+      {"conventions",
+       {{"world", "right-handed, z up, metres"},
+        {"camera_to_world",
+         "4x4, row-major, column vectors; opencv camera: x right, y down, z forward"},
+        {"intrinsics",
+         "3x3, row-major, pixels; origin at the top left corner, pixel centres at .5"},
+        {"model_to_world",
+         "4x4, row-major, column vectors; the model file's coordinates to the world, with "
+         "the scale; model_to_camera likewise, to a camera of opencv axes or opengl's (x "
+         "right, y up, z backward)"},
+        {"box", "[x, y, width, height] in whole pixels around the model in the mask"},
+        {"model_box", "[least, most] of the model file's coordinates; box_m in the world"}}}};
+  if (!dataset.hierarchies.empty()) object["hierarchies"] = dataset.hierarchies;
   for (const auto& [name, plane] : dataset.planes)
     object["planes"][name] = {{"encoding", plane.encoding}, {"convention", plane.convention}};
   for (const Concern& concern : dataset.concerns)

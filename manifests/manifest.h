@@ -4,6 +4,7 @@
 #include "manifests/camera_geometry.h"
 #include "manifests/concerns.h"
 #include "manifests/licences.h"
+#include "manifests/model_pose.h"
 #include "manifests/pixel_counts.h"
 #include "tracer/base/hash.h"
 #include "tracer/render/render.h"
@@ -41,6 +42,9 @@ namespace ds {
 ///   1  "licences" an object of asset: text; floats without a point where they are whole
 ///   2  "licences" a list of {"spdx", "text", "assets"}, each text once; read as 2 is 1 too
 inline constexpr int k_manifest_format = 2;
+/// Counts up when lines or dataset.json gain a field, so that a build writes them anew. Readers need not
+/// know it.
+inline constexpr int k_manifest_fields = 2;
 
 /// One file of a dataset.
 struct FileRecord {
@@ -53,6 +57,10 @@ struct FileRecord {
 /// One image of a dataset: a line of manifest/images.jsonl.
 struct ImageRecord {
   std::string id, model, class_path, split, material, environment, view;
+  /// Index of DatasetRecord::class_paths; null in the file, and absent here, where it has no class.
+  std::optional<std::uint64_t> class_id{};
+  /// "classes": class path by DatasetRecord::hierarchies, "" for none. Not there where those are not.
+  std::map<std::string, std::string> other_classes{};
   std::vector<FileRecord> files;
   std::uint64_t seed = 0;  ///< below 2^53, so that every JSON reader gets it exactly
   int spp = 0, width = 0, height = 0;
@@ -60,6 +68,9 @@ struct ImageRecord {
   std::array<double, 9> intrinsics{};        ///< as camera_intrinsics gives it
   std::array<double, 16> camera_to_world{};  ///< as camera_pose gives it
   double lens_radius_m = 0, focus_distance_m = 0;
+  /// Absent in lines of an older dsbuild. The line has "model_to_world", "model_box" ([least, most]), and
+  /// what follows from them: "box_m" (the same in the world), "model_to_camera" for "opencv" and "opengl".
+  std::optional<ModelPose> pose{};
   double tone_map_scale = 1;  ///< the factor used (autolinear's differs from image to image)
   std::uint64_t rejected_samples = 0;
   /// Estimated RMS error of the linear picture's luminance over its mean, from the picture's own
@@ -67,7 +78,9 @@ struct ImageRecord {
   std::optional<double> relative_error{};
   FilmFacts film{};  ///< "film": samples taken, samples refused by kind, the error's 95 % interval
   /// An object of the counts that were made; with those of mask and amodal mask the line has
-  /// "visible_fraction" too, their quotient; null where that of the amodal mask is 0.
+  /// "visible_fraction" too, their quotient, and "occlusion", what it lacks of 1; null where that of the
+  /// amodal mask is 0. With the mask's it has "box": [x, y, width, height] in pixels around what is seen of
+  /// the model, from its first column and row; null where nothing is.
   PixelCounts pixel_counts{};
   Hash128 render_key, files_key;
   std::array<Hash128, 5> parts{};  ///< model, material, environment, camera, engine
@@ -84,7 +97,9 @@ struct DatasetRecord {
   std::string recipe_text;  ///< canonical_recipe(): no path of this machine
   std::string dsbuild_version;
   std::uint64_t seed = 0;
-  std::vector<std::string> class_paths;
+  std::vector<std::string> class_paths;  ///< a class's id is its index
+  /// Further classifications: their classes, sorted. Not there where there are none.
+  std::map<std::string, std::vector<std::string>> hierarchies{};
   std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< "images", "models", "train", ...
   std::vector<LicenceRecord> licences;  ///< found beside the assets, as group_licences gives them
   /// By name, of the files beside the picture. Not there where there are none.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "manifests/manifest_glance.h"
 
+#include "manifests/json_text.h"
+
 #include <charconv>
 
 namespace ds {
@@ -33,7 +35,10 @@ class Cursor {
     find(key);
     std::uint64_t value = 0;
     const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
-    if (error != std::errc()) fail();
+    if (error != std::errc()) {
+      fail();
+      return 0;
+    }
     rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
     return value;
   }
@@ -49,6 +54,21 @@ class Cursor {
   }
 
   bool has(std::string_view key) const { return rest_.find(key) != rest_.npos; }
+  /// Whether null stands behind the key.
+  bool is_null(std::string_view key) const {
+    const std::size_t found = rest_.find(key);
+    return found == rest_.npos || rest_.substr(found + key.size()).starts_with("null");
+  }
+  /// Whether the text comes next.
+  bool follows(std::string_view text) const { return rest_.starts_with(text); }
+  /// What comes before the text.
+  std::string_view until(std::string_view text) {
+    const std::size_t end = rest_.find(text);
+    if (end == rest_.npos) return fail();
+    const std::string_view value = rest_.substr(0, end);
+    rest_.remove_prefix(end);
+    return value;
+  }
 
  private:
   std::string_view fail() {
@@ -75,7 +95,12 @@ class Cursor {
 std::optional<LineGlance> glance_at(std::string_view line) {
   LineGlance glance;
   Cursor at(line);
+  if (!at.is_null(R"("class_id":)")) glance.class_id = at.count(R"("class_id":)");
   glance.class_path = at.text(R"("class_path":)");
+  if (at.follows(R"(,"classes":{)")) {
+    glance.other_classes = at.until(R"(,"environment":)");
+    glance.other_classes.erase(0, std::string_view(R"(,"classes":)").size());
+  }
   glance.environment = at.text(R"("environment":)");
   Cursor files = at.inside(R"("files":)", '[', R"(],"files_key":)");
   while (files.ok() && files.has(R"("kind":)")) {
@@ -93,10 +118,14 @@ std::optional<LineGlance> glance_at(std::string_view line) {
   const auto count = [&](std::string_view key, std::optional<std::uint64_t>& to) {
     if (counts.has(key)) to = counts.count(key);
   };
+  count(R"("above":)", glance.pixel_counts.above);
   count(R"("amodal":)", glance.pixel_counts.amodal);
+  count(R"("below":)", glance.pixel_counts.below);
   count(R"("frame":)", glance.pixel_counts.frame);
+  count(R"("left":)", glance.pixel_counts.left);
   count(R"("lit":)", glance.pixel_counts.lit);
   count(R"("model":)", glance.pixel_counts.model);
+  count(R"("right":)", glance.pixel_counts.right);
   count(R"("white":)", glance.pixel_counts.white);
   glance.render_key = at.hash(R"("render_key":)");
   glance.split = at.text(R"("split":)");
@@ -116,6 +145,8 @@ LineGlance glance_at(const ImageRecord& image) {
       {},
       static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height),
       image.pixel_counts,
+      image.class_id,
+      image.other_classes.empty() ? "" : canonical_json(image.other_classes),
       image.render_key,
       image.files_key};
   for (const FileRecord& file : image.files)

@@ -124,7 +124,7 @@ std::optional<json> parse_object(const std::string& text, const SourcePlace& pla
     if (value.is_object()) return value;
     diagnostics.add(place, "must be a JSON object, got {}", value.type_name());
   } catch (const json::exception& error) {
-    diagnostics.add(place, "must be a JSON object: {}", error.what());
+    diagnostics.add(place, "must be a JSON object: {}", json_fault(error));
   }
   return std::nullopt;
 }
@@ -147,53 +147,6 @@ std::vector<FileRecord> files_from(const json& values, const SourcePlace& place,
     fields.hash("pixels_xxh128", file.pixels);
   }
   return files;
-}
-
-void read_parts(const json& value, const SourcePlace& place, Diagnostics& diagnostics,
-                ImageRecord& image) {
-  Fields parts(value, place, diagnostics);
-  if (!value.is_object()) {
-    parts.wrong("parts", "an object", value);
-    return;
-  }
-  static constexpr std::array k_names{"model", "material", "environment", "camera", "engine"};
-  for (std::size_t i = 0; i < k_names.size(); ++i)
-    parts.hash(k_names[i], image.parts[i]);
-}
-
-ImageRecord image_from(const std::string& line, const SourcePlace& place,
-                       Diagnostics& diagnostics) {
-  ImageRecord image;
-  const auto object = parse_object(line, place, diagnostics);
-  if (!object) return image;
-  Fields fields(*object, place, diagnostics);
-  fields.text("id", image.id);
-  fields.text("model", image.model);
-  fields.text("class_path", image.class_path);
-  fields.text("split", image.split);
-  fields.text("material", image.material);
-  fields.text("environment", image.environment);
-  fields.text("view", image.view);
-  if (const json* files = fields.find("files"))
-    image.files = files_from(*files, place, diagnostics);
-  fields.count("seed", image.seed);
-  fields.count("spp", image.spp);
-  fields.count("width", image.width);
-  fields.count("height", image.height);
-  fields.text("math", image.math);
-  fields.matrix("intrinsics", 3, image.intrinsics);
-  fields.matrix("camera_to_world", 4, image.camera_to_world);
-  fields.number("lens_radius_m", image.lens_radius_m);
-  fields.number("focus_distance_m", image.focus_distance_m);
-  fields.number("tone_map_scale", image.tone_map_scale);
-  fields.count("rejected_samples", image.rejected_samples);
-  fields.optional_number("relative_error", image.relative_error);
-  fields.object("film", image.film, film_facts_from);
-  fields.object("pixel_counts", image.pixel_counts, pixel_counts_from);
-  fields.hash("render_key", image.render_key);
-  fields.hash("files_key", image.files_key);
-  if (const json* parts = fields.find("parts")) read_parts(*parts, place, diagnostics, image);
-  return image;
 }
 
 /// An object whose members are all of one kind, into a list of pairs.
@@ -224,6 +177,72 @@ void read_texts(Fields& fields, const char* name, std::vector<std::string>& to) 
   } else {
     fields.wrong(name, "a list of texts", *list);
   }
+}
+
+/// What an older dsbuild wrote none of.
+void read_pose(Fields& fields, const json& object, std::optional<ModelPose>& to) {
+  if (!object.contains("model_to_world")) return;
+  ModelPose& pose = to.emplace();
+  fields.matrix("model_to_world", 4, pose.model_to_world);
+  std::array<double, 6> box{};
+  fields.matrix("model_box", 3, box);
+  pose.model_box = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
+}
+
+void read_parts(const json& value, const SourcePlace& place, Diagnostics& diagnostics,
+                ImageRecord& image) {
+  Fields parts(value, place, diagnostics);
+  if (!value.is_object()) {
+    parts.wrong("parts", "an object", value);
+    return;
+  }
+  static constexpr std::array k_names{"model", "material", "environment", "camera", "engine"};
+  for (std::size_t i = 0; i < k_names.size(); ++i)
+    parts.hash(k_names[i], image.parts[i]);
+}
+
+ImageRecord image_from(const std::string& line, const SourcePlace& place,
+                       Diagnostics& diagnostics) {
+  ImageRecord image;
+  const auto object = parse_object(line, place, diagnostics);
+  if (!object) return image;
+  Fields fields(*object, place, diagnostics);
+  fields.text("id", image.id);
+  fields.text("model", image.model);
+  fields.text("class_path", image.class_path);
+  fields.text("split", image.split);
+  if (const auto id = object->find("class_id"); id != object->end() && !id->is_null())
+    fields.count("class_id", image.class_id.emplace());
+  if (object->contains("classes")) {
+    std::vector<std::pair<std::string, std::string>> classes;
+    read_members(fields, *object, place, diagnostics, "classes", classes,
+                 [](Fields& f, const char* name, std::string& to) { f.text(name, to); });
+    image.other_classes = {classes.begin(), classes.end()};
+  }
+  fields.text("material", image.material);
+  fields.text("environment", image.environment);
+  fields.text("view", image.view);
+  if (const json* files = fields.find("files"))
+    image.files = files_from(*files, place, diagnostics);
+  fields.count("seed", image.seed);
+  fields.count("spp", image.spp);
+  fields.count("width", image.width);
+  fields.count("height", image.height);
+  fields.text("math", image.math);
+  fields.matrix("intrinsics", 3, image.intrinsics);
+  fields.matrix("camera_to_world", 4, image.camera_to_world);
+  fields.number("lens_radius_m", image.lens_radius_m);
+  fields.number("focus_distance_m", image.focus_distance_m);
+  read_pose(fields, *object, image.pose);
+  fields.number("tone_map_scale", image.tone_map_scale);
+  fields.count("rejected_samples", image.rejected_samples);
+  fields.optional_number("relative_error", image.relative_error);
+  fields.object("film", image.film, film_facts_from);
+  fields.object("pixel_counts", image.pixel_counts, pixel_counts_from);
+  fields.hash("render_key", image.render_key);
+  fields.hash("files_key", image.files_key);
+  if (const json* parts = fields.find("parts")) read_parts(*parts, place, diagnostics, image);
+  return image;
 }
 
 /// Before format 2: the text once for each asset.
@@ -347,6 +366,11 @@ DatasetRecord dataset_from_json(const std::string& text, const std::string& file
     fields.text("dsbuild_version", dataset.dsbuild_version);
     fields.count("seed", dataset.seed);
     read_texts(fields, "class_paths", dataset.class_paths);
+    if (object->contains("hierarchies")) {
+      std::vector<std::pair<std::string, std::vector<std::string>>> hierarchies;
+      read_members(fields, *object, place, diagnostics, "hierarchies", hierarchies, read_texts);
+      dataset.hierarchies = {hierarchies.begin(), hierarchies.end()};
+    }
     read_members(fields, *object, place, diagnostics, "counts", dataset.counts,
                  [](Fields& f, const char* name, std::uint64_t& to) { f.count(name, to); });
     dataset.licences = format == 1 ? licences_of_format_1(fields, *object, place, diagnostics)

@@ -19,11 +19,11 @@ struct Field {
   const char* name;
   std::optional<std::uint64_t> PixelCounts::*count;
 };
-constexpr Field k_fields[] = {{"lit", &PixelCounts::lit},
-                              {"white", &PixelCounts::white},
-                              {"model", &PixelCounts::model},
-                              {"frame", &PixelCounts::frame},
-                              {"amodal", &PixelCounts::amodal}};
+constexpr Field k_fields[] = {{"lit", &PixelCounts::lit},       {"white", &PixelCounts::white},
+                              {"model", &PixelCounts::model},   {"frame", &PixelCounts::frame},
+                              {"amodal", &PixelCounts::amodal}, {"left", &PixelCounts::left},
+                              {"right", &PixelCounts::right},   {"above", &PixelCounts::above},
+                              {"below", &PixelCounts::below}};
 
 }  // namespace
 
@@ -40,15 +40,26 @@ PixelCounts count_picture(std::span<const std::uint8_t> samples, int channels) {
 PixelCounts count_mask(std::span<const std::uint8_t> samples, int width, int height) {
   DS_ASSERT(samples.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   std::uint64_t model = 0, frame = 0;
+  int left = width, right = width, above = height, below = height;
   std::size_t at = 0;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x, ++at) {
       if (samples[at] == 0) continue;
       ++model;
       frame += x == 0 || y == 0 || x == width - 1 || y == height - 1 ? 1U : 0U;
+      left = std::min(left, x);
+      right = std::min(right, width - 1 - x);
+      above = std::min(above, y);
+      below = height - 1 - y;
     }
   }
-  return {{}, {}, model, frame};
+  PixelCounts counts{{}, {}, model, frame};
+  const auto count = [](int pixels) { return static_cast<std::uint64_t>(pixels); };
+  counts.left = count(left);
+  counts.right = count(right);
+  counts.above = count(above);
+  counts.below = count(below);
+  return counts;
 }
 
 PixelCounts count_amodal_mask(std::span<const std::uint8_t> samples, int width, int height) {

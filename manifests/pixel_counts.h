@@ -18,13 +18,16 @@ struct PixelCounts {
   std::optional<std::uint64_t> model;     ///< of the mask: the model is seen
   std::optional<std::uint64_t> frame;     ///< of those, in the first or last row or column
   std::optional<std::uint64_t> amodal{};  ///< of the amodal mask: what would be seen of it alone
+  /// Of the mask: columns before and behind the model, rows above and below it; all where it is not
+  /// seen. They tell the box around it.
+  std::optional<std::uint64_t> left{}, right{}, above{}, below{};
 
   bool operator==(const PixelCounts&) const = default;
 };
 
 /// `lit` of 8 bit samples, interleaved. Whether a white pixel is clipped they do not tell.
 PixelCounts count_picture(std::span<const std::uint8_t> samples, int channels);
-/// `model` and `frame` of a mask, one sample a pixel, 0 where the model is not seen.
+/// `model`, `frame` and the sides of a mask, one sample a pixel, 0 where the model is not seen.
 PixelCounts count_mask(std::span<const std::uint8_t> samples, int width, int height);
 /// `amodal` of an amodal mask, likewise.
 PixelCounts count_amodal_mask(std::span<const std::uint8_t> samples, int width, int height);

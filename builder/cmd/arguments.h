@@ -21,7 +21,7 @@ struct Arguments {
   std::string output_folder, store_folder, device;
   std::string shard = "1/1";
   std::uint64_t rerender = 0, seed = 0;
-  std::string format, export_folder;
+  std::string format, export_folder, hierarchy;
   std::vector<std::string> splits, filters, only;
   std::string report_file, against;
   int most_spp = 0, seeds = 4;
@@ -31,7 +31,7 @@ struct Arguments {
   std::string budget;
   bool json = false, dry_run = false, keep_going = false, force = false, explain = false,
        strict = false;
-  bool effects = false;
+  bool effects = false, ids = false;
   bool rehash = false;
   bool adopt = false;
   bool copy = false;
@@ -67,12 +67,14 @@ enum class Option {
   format,
   export_folder,
   splits,
+  hierarchy,
   filters,
   only,
   report_file,
   against,
   report_size,  ///< how much is measured
-  forecast,     ///< what time and disk are forecast for
+  ids,
+  forecast,  ///< what time and disk are forecast for
 };
 
 /// A verb of the command. `run` returns the exit code: 0 where all is well, 1 where something

@@ -82,6 +82,7 @@ int run_export(const Arguments& arguments) {
                         arguments.format,
                         arguments.splits,
                         filters_of(arguments),
+                        arguments.hierarchy,
                         arguments.copy,
                         {}};
   if (const std::string why = behind(arguments); !why.empty()) request.notes.push_back(why);

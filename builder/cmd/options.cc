@@ -181,6 +181,16 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
           ->allow_extra_args(false)
           ->type_name("SPLIT");
       return;
+    case Option::hierarchy:
+      verb.add_option("--classes", to.hierarchy,
+                      "the classes of this one of classes.more, in place of those that images are "
+                      "labelled with")
+          ->type_name("NAME");
+      return;
+    case Option::ids:
+      verb.add_flag("--ids", to.ids,
+                    "only the class paths, by id: as classes.ids reads them, to keep the ids");
+      return;
     case Option::filters:
       verb.add_option(
               "--filter", to.filters,

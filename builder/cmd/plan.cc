@@ -138,6 +138,10 @@ Answer answer(const Wish& wish, const Recipe& recipe, const std::vector<ProbedWo
                   {error, 0, double(max_spp)});
 }
 
+bool is_work(const PairWork& pair) {
+  return pair.trace > 0 || pair.remake > 0;
+}
+
 nlohmann::json answer_json(const Answer& answer, const Calibration& calibration) {
   nlohmann::json object{{"device", calibration.device}, {"measured", calibration.measured}};
   if (answer.forecast) object.update(to_json(*answer.forecast));
@@ -151,8 +155,9 @@ nlohmann::json answer_json(const Answer& answer, const Calibration& calibration)
 }
 
 void print_answer(const Answer& answer, const Calibration& calibration) {
-  say(Stream::result, "{}, on {}\n", answer.sentence, calibration.device);
-  if (!answer.forecast) return;
+  say(Stream::result, "{}{}{}\n", answer.sentence, calibration.device.empty() ? "" : ", on ",
+      calibration.device);
+  if (!answer.forecast || calibration.device.empty()) return;
   say(Stream::result, "time {}\ndisk {}\n\n{}", time_text(answer.forecast->seconds),
       size_text(answer.forecast->bytes), pairs_text(*answer.forecast));
 }
@@ -182,10 +187,14 @@ int run_plan(const Arguments& arguments) {
   }
   bool answered = true;
   if (wish.any) {
-    const Calibration calibration = calibration_of(
-        arguments, dataset, inputs, wish.all_images() || dataset.recipe.engine.target);
-    const Answer found =
-        answer(wish, dataset.recipe, join(work_of(plan, dataset.recipe), calibration));
+    const std::vector<PairWork> work = work_of(plan, dataset.recipe);
+    Calibration calibration;
+    Answer found{"nothing to make, so no time was measured", {}, {}, Forecast{}};
+    if (wish.all_images() || std::any_of(work.begin(), work.end(), is_work)) {
+      calibration = calibration_of(arguments, dataset, inputs,
+                                   wish.all_images() || dataset.recipe.engine.target);
+      found = answer(wish, dataset.recipe, join(work, calibration));
+    }
     answered = found.forecast.has_value();
     if (arguments.json)
       object["forecast"] = answer_json(found, calibration);

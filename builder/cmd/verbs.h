@@ -9,6 +9,7 @@ int run_build(const Arguments& arguments);
 int run_plan(const Arguments& arguments);
 int run_status(const Arguments& arguments);
 int run_check(const Arguments& arguments);
+int run_classes(const Arguments& arguments);
 int run_export(const Arguments& arguments);
 int run_explain(const Arguments& arguments);
 int run_verify(const Arguments& arguments);

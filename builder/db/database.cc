@@ -36,7 +36,7 @@ void read_facts(const std::string& text, Product& product) {
     if (const auto counts = object.find(k_pixel_counts); counts != object.end())
       product.pixel_counts = pixel_counts_from(*counts);
   } catch (const nlohmann::json::exception& error) {
-    throw DamagedDatabase(fmt::format("the database is damaged: facts: {}", error.what()));
+    throw DamagedDatabase(fmt::format("the database is damaged: facts: {}", json_fault(error)));
   } catch (const Error& error) {
     throw DamagedDatabase(fmt::format("the database is damaged: {}", error.what()));
   }
@@ -47,7 +47,7 @@ T json_column(const Statement& row, int column) {
   try {
     return nlohmann::json::parse(row.text(column)).get<T>();
   } catch (const nlohmann::json::exception& error) {
-    throw DamagedDatabase(fmt::format("the database is damaged: {}", error.what()));
+    throw DamagedDatabase(fmt::format("the database is damaged: {}", json_fault(error)));
   }
 }
 
@@ -55,7 +55,7 @@ std::vector<std::string> parse_overrides(const std::string& text) {
   try {
     return nlohmann::json::parse(text).get<std::vector<std::string>>();
   } catch (const nlohmann::json::exception& error) {
-    throw DamagedDatabase(fmt::format("the database is damaged: overrides: {}", error.what()));
+    throw DamagedDatabase(fmt::format("the database is damaged: overrides: {}", json_fault(error)));
   }
 }
 
@@ -119,17 +119,19 @@ void Database::put_content(const std::filesystem::path& file, const FileStamp& s
 
 std::optional<KnownModel> Database::find_model(Hash128 content, int reader) {
   Statement row = connection_->prepare(
-      "SELECT geometry, uvs, colors, damage, box, normals FROM geometry "
+      "SELECT geometry, uvs, colors, damage, extent, normals FROM geometry "
       "WHERE content = ?1 AND reader = ?2");
   if (!row.bind(1, content.hex()).bind(2, std::int64_t{reader}).step()) return std::nullopt;
-  const auto box = json_column<std::array<double, 6>>(row, 4);
+  const auto e = json_column<std::array<double, 9>>(row, 4);
   return KnownModel{
       {hash_column(row, 0), hash_column(row, 1), hash_column(row, 2), hash_column(row, 5)},
       json_column<MendedDamage>(row, 3),
-      {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}}};
+      {{{e[0], e[1], e[2]}, {e[3], e[4], e[5]}}, {e[6], e[7], e[8]}}};
 }
 
 void Database::put_model(Hash128 content, int reader, const KnownModel& model) {
+  const auto& [box, centroid] = model.extent;
+  const auto& [least, most] = box;
   connection_->prepare("INSERT OR REPLACE INTO geometry VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)")
       .bind(1, content.hex())
       .bind(2, std::int64_t{reader})
@@ -138,8 +140,8 @@ void Database::put_model(Hash128 content, int reader, const KnownModel& model) {
       .bind(5, model.hashes.uvs.hex())
       .bind(6, model.hashes.colors.hex())
       .bind(7, model.hashes.normals.hex())
-      .bind(8, nlohmann::json({model.box.least.x, model.box.least.y, model.box.least.z,
-                               model.box.most.x, model.box.most.y, model.box.most.z})
+      .bind(8, nlohmann::json({least.x, least.y, least.z, most.x, most.y, most.z, centroid.x,
+                               centroid.y, centroid.z})
                    .dump())
       .run();
 }

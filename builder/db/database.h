@@ -72,7 +72,7 @@ struct PlacedView {
 struct KnownModel {
   MeshHashes hashes;
   MendedDamage damage;
-  Box box;  ///< of the file's coordinates
+  MeshExtent extent;
 
   bool operator==(const KnownModel&) const = default;
 };

@@ -4,6 +4,7 @@
 #include "builder/make/older_lines.h"
 #include "builder/plan/dataset_concerns.h"
 #include "builder/plan/dataset_manifest.h"
+#include "manifests/json_text.h"
 #include "manifests/manifest_writer.h"
 #include "tracer/base/disk_error.h"
 #include "tracer/base/error.h"
@@ -46,6 +47,7 @@ class Lines {
   WrittenManifest write();
 
  private:
+  bool is_labelled(const LineGlance& line, const ImageSpec& spec) const;
   bool still_holds(const LineGlance& line, const Wanted& wanted) const;
   bool in_place(const LineGlance& line) const;
   bool has_other_files(const LineGlance& line) const;
@@ -75,6 +77,14 @@ ImageFacts facts_of(const ImageSpec& spec, const PixelCounts& counts) {
           counts};
 }
 
+/// Whether the line labels the image as the plan does.
+bool Lines::is_labelled(const LineGlance& line, const ImageSpec& spec) const {
+  return line.class_path == *spec.class_path && line.split == *spec.split &&
+         line.class_id == class_id_of(plan_, *spec.class_path) &&
+         line.other_classes ==
+             (spec.other_classes->empty() ? "" : canonical_json(*spec.other_classes));
+}
+
 /// Whether the line of a made image is what would be written of it now. Its cameras and settings are
 /// in its keys, and what is known of its files goes with their bytes.
 bool Lines::still_holds(const LineGlance& line, const Wanted& wanted) const {
@@ -82,8 +92,7 @@ bool Lines::still_holds(const LineGlance& line, const Wanted& wanted) const {
   if (!work_.lines_hold || work_.is_new(image)) return false;
   const ImageSpec& spec = image.spec;
   const ImageKeys& keys = image.keys;
-  if (line.render_key != keys.render || line.files_key != keys.files ||
-      line.class_path != *spec.class_path || line.split != *spec.split ||
+  if (line.render_key != keys.render || line.files_key != keys.files || !is_labelled(line, spec) ||
       line.material != *spec.material_name || line.environment != *spec.environment_name ||
       line.model != *spec.model_name)
     return false;
@@ -93,7 +102,7 @@ bool Lines::still_holds(const LineGlance& line, const Wanted& wanted) const {
                       // Counts that an older dsbuild did not make are made now.
                       const bool counted =
                           output.kind == "image"  ? line.pixel_counts.lit.has_value()
-                          : output.kind == "mask" ? line.pixel_counts.model.has_value()
+                          : output.kind == "mask" ? line.pixel_counts.left.has_value()
                                                   : true;
                       return counted && file.path == output.path && file.kind == output.kind &&
                              row != nullptr && row->object == file.xxh128;
@@ -122,7 +131,7 @@ bool Lines::has_other_files(const LineGlance& line) const {
 }
 
 void Lines::add_made(const Wanted& wanted) {
-  ImageRecord record = image_record(*wanted.image, *dataset_.database);
+  ImageRecord record = image_record(*wanted.image, dataset_.recipe, plan_, *dataset_.database);
   count_older_pixels(record, *wanted.image, dataset_.folder, *dataset_.database);
   made_[wanted.made] = facts_of(wanted.image->spec, record.pixel_counts);
   writer_.add(to_json_line(record), glance_at(record));
@@ -148,14 +157,15 @@ void Lines::take_older(const OlderLine& line, bool of_plan) {
 void Lines::take_older_of_plan(const OlderLine& line, const PlannedImage& image) {
   if (image.refused) return;
   const LineGlance& glance = line.glance;
-  const bool labelled =
-      glance.class_path == *image.spec.class_path && glance.split == *image.spec.split;
+  const bool labelled = is_labelled(glance, image.spec);
   // Of an output that is switched off the file is gone.
   const bool others = !work_.keep_all && has_other_files(glance);
   if (labelled && !others) return take_older(line, true);
   ImageRecord record = line.record();
   record.class_path = image.spec.class_path;
   record.split = image.spec.split;
+  record.class_id = class_id_of(plan_, record.class_path);
+  record.other_classes = image.spec.other_classes;
   if (others) {
     const auto wanted = output_paths(dataset_.recipe.outputs, record.id);
     std::erase_if(record.files, [&](const FileRecord& file) {

@@ -112,7 +112,7 @@ void count_older_pixels(ImageRecord& record, const PlannedImage& image,
                         const std::filesystem::path& folder, Database& database) {
   for (const OutputFile& output : image.keys.outputs) {
     const bool counted = output.kind == "image"  ? record.pixel_counts.lit.has_value()
-                         : output.kind == "mask" ? record.pixel_counts.model.has_value()
+                         : output.kind == "mask" ? record.pixel_counts.left.has_value()
                                                  : true;
     if (counted) continue;
     try {

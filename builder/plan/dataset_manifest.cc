@@ -7,6 +7,7 @@
 #include "tracer/scene/type_tables.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #ifndef DS_VERSION
@@ -31,19 +32,46 @@ std::vector<std::pair<std::string, std::filesystem::path>> with_names(
   return named;
 }
 
+/// The classes that images have in each.
+std::map<std::string, std::vector<std::string>> hierarchies_of(const Plan& plan) {
+  std::map<std::string, std::set<std::string>> classes;
+  const Shared<std::map<std::string, std::string>>* before = nullptr;
+  for (const PlannedImage& image : plan.images) {
+    const auto& of_image = image.spec.other_classes;
+    if (before != nullptr && before->is_same(of_image)) continue;
+    before = &of_image;
+    for (const auto& [name, path] : *of_image) {
+      std::set<std::string>& known = classes[name];
+      if (!path.empty()) known.insert(path);
+    }
+  }
+  std::map<std::string, std::vector<std::string>> hierarchies;
+  for (const auto& [name, paths] : classes)
+    hierarchies[name].assign(paths.begin(), paths.end());
+  return hierarchies;
+}
+
 }  // namespace
+
+std::optional<std::uint64_t> class_id_of(const Plan& plan, const std::string& class_path) {
+  const auto at = plan.class_ids.find(class_path);
+  return at == plan.class_ids.end() ? std::nullopt : std::optional(at->second);
+}
 
 std::string program_version() {
   return DS_VERSION;
 }
 
-ImageRecord image_record(const PlannedImage& image, Database& database) {
+ImageRecord image_record(const PlannedImage& image, const Recipe& recipe, const Plan& plan,
+                         Database& database) {
   const ImageSpec& spec = image.spec;
   ImageRecord record;
   record.id = spec.id;
   record.model = spec.model_name;
   record.class_path = spec.class_path;
   record.split = spec.split;
+  record.class_id = class_id_of(plan, *spec.class_path);
+  record.other_classes = spec.other_classes;
   record.material = spec.material_name;
   record.environment = spec.environment_name;
   record.view = spec.view;
@@ -56,6 +84,8 @@ ImageRecord image_record(const PlannedImage& image, Database& database) {
   record.camera_to_world = camera_pose(spec.camera);
   record.lens_radius_m = spec.camera.lens_radius_m;
   record.focus_distance_m = spec.camera.focus_distance_m;
+  if (const auto at = plan.extents.find(spec.model_file->native()); at != plan.extents.end())
+    record.pose = {model_to_world(at->second, recipe.normalise).m, at->second.box};
   record.render_key = image.keys.render;
   record.files_key = image.keys.files;
   std::copy_n(image.keys.parts.begin(), record.parts.size(), record.parts.begin());
@@ -87,14 +117,16 @@ DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
   record.recipe_text = canonical_recipe(recipe);
   record.dsbuild_version = program_version();
   record.seed = recipe.seed;
-  std::set<std::string_view> models, classes;
+  std::set<std::string_view> models;
   std::map<std::string_view, std::uint64_t> splits;
   for (const ImageFacts& image : images) {
     models.insert(image.model);
-    if (!image.class_path.empty()) classes.insert(image.class_path);
     if (!image.split.empty()) ++splits[image.split];
   }
-  record.class_paths.assign(classes.begin(), classes.end());
+  record.class_paths.resize(plan.class_ids.size());
+  for (const auto& [path, id] : plan.class_ids)
+    record.class_paths[id] = path;
+  record.hierarchies = hierarchies_of(plan);
   record.counts = {{"images", images.size()}, {"models", models.size()}};
   for (const auto& [split, count] : splits)
     record.counts.emplace_back(split, count);

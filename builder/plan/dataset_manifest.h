@@ -15,9 +15,13 @@ namespace ds {
 /// The version that manifests and `--version` name.
 std::string program_version();
 
+/// Of a class of the plan; nothing of "".
+std::optional<std::uint64_t> class_id_of(const Plan& plan, const std::string& class_path);
+
 /// The manifest's line for an image whose files are in place. Throws Error(io) where the database
 /// does not know one.
-ImageRecord image_record(const PlannedImage& image, Database& database);
+ImageRecord image_record(const PlannedImage& image, const Recipe& recipe, const Plan& plan,
+                         Database& database);
 
 /// What the manifest says of the dataset as a whole, for the images it lists; `pending` are to come.
 DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,

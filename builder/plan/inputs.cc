@@ -77,7 +77,7 @@ KnownModel Inputs::look_at_model(const std::filesystem::path& file) {
   if (!known) {
     const Model model = read_model(file);
     known =
-        KnownModel{mesh_hashes(model.mesh), damage_and_facts(model.report), bounds_of(model.mesh)};
+        KnownModel{mesh_hashes(model.mesh), damage_and_facts(model.report), extent_of(model.mesh)};
   }
   if (new_content || new_model)
     new_models_.push_back(
@@ -90,7 +90,7 @@ const Inputs::ModelFacts& Inputs::model(const std::filesystem::path& file) {
     const KnownModel known = look_at_model(path);
     ModelFacts facts;
     facts.hashes = known.hashes;
-    facts.box = known.box;
+    facts.extent = known.extent;
     facts.has.normals = known.hashes.normals != Hash128{};
     for (const auto& [name, count] : known.damage) {
       const MeshReportColumn* const column = mesh_report_column(name);

@@ -72,8 +72,8 @@ class Inputs {
   const Sphere& model_sphere(const std::filesystem::path& file, const NormaliseOptions& options);
   /// What its file has beside places; throws likewise.
   MeshExtras model_has(const std::filesystem::path& file) { return model(file).has; }
-  /// Of the file's coordinates; throws likewise.
-  const Box& model_box(const std::filesystem::path& file) { return model(file).box; }
+  /// Where it lies in its file's coordinates; throws likewise.
+  const MeshExtent& model_extent(const std::filesystem::path& file) { return model(file).extent; }
   /// As ModelMeshes::get, of the model that `model_hashes` saw.
   Mesh model_mesh(const std::filesystem::path& file, const NormaliseOptions& options) {
     return meshes_.get(model_source(file, options));
@@ -115,7 +115,7 @@ class Inputs {
     MeshHashes hashes;
     MendedDamage damage, unlikely;
     MeshExtras has;
-    Box box;
+    MeshExtent extent;
   };
   const ModelFacts& model(const std::filesystem::path& file);
   KnownModel look_at_model(const std::filesystem::path& file);

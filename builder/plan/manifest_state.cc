@@ -57,6 +57,8 @@ Hash128 hash_of_labels(DatasetRecord record, const Plan& plan) {
     add_word(hash, image.spec.id);
     for (const Label& label : k_labels)
       add_word(hash, *(image.spec.*label.wanted));
+    for (const auto& [hierarchy, path] : *image.spec.other_classes)
+      add_word(hash, path);
   }
   return hash.hash();
 }
@@ -132,6 +134,15 @@ void compare_images(const Plan& plan, const std::vector<ImageRecord>& records,
       behind.push_back(
           fmt::format("{} of {} image{} ({})", label.name, count, count == 1 ? "" : "s", first));
   }
+  std::size_t others = 0;
+  for (const PlannedImage& image : plan.images) {
+    const auto record = by_id.find(image.spec.id);
+    if (record != by_id.end() && !image.stale() &&
+        record->second->other_classes != *image.spec.other_classes)
+      ++others;
+  }
+  if (others > 0)
+    behind.push_back(fmt::format("classes.more of {} image{}", others, others == 1 ? "" : "s"));
 }
 
 /// "licences: models/a.off, models/b.off and 3 more"
@@ -183,6 +194,13 @@ std::map<std::string, std::string> licence_texts(const DatasetRecord& record) {
   return texts;
 }
 
+std::map<std::string, std::size_t> class_ids(const DatasetRecord& record) {
+  std::map<std::string, std::size_t> ids;
+  for (const std::string& path : record.class_paths)
+    ids.emplace(path, ids.size());
+  return ids;
+}
+
 /// What the labels tell; the rest is counted from images.
 void compare_concerns(std::vector<Concern> before, std::vector<Concern> after,
                       std::vector<std::string>& behind) {
@@ -215,6 +233,7 @@ void compare_datasets(const DatasetRecord& before, const DatasetRecord& after,
   if (before.licence != after.licence)
     behind.push_back("licence: " + change(before.licence, after.licence));
   add_named(behind, "licence texts", differing(licence_texts(before), licence_texts(after)));
+  add_named(behind, "class ids", differing(class_ids(before), class_ids(after)));
   add_named(behind, "mended models", differing(mended_models(before), mended_models(after)));
   compare_concerns(before.concerns, after.concerns, behind);
   std::vector<std::string> settings =
@@ -224,11 +243,16 @@ void compare_datasets(const DatasetRecord& before, const DatasetRecord& after,
   add_named(behind, "settings", settings);
 }
 
+/// What writes the manifest.
+Hash128 hash_of_program() {
+  return hash_text(fmt::format("{} {}", program_version(), k_manifest_fields));
+}
+
 /// The version that wrote the manifest, where that is another one.
 std::string older_program(const fs::path& folder) {
   try {
     std::string version = read_dataset_manifest(folder).dsbuild_version;
-    return version == program_version() ? "" : version;
+    return version == program_version() ? version + " without fields there are now" : version;
   } catch (const Error&) {
     return "an unknown version";
   }
@@ -262,7 +286,7 @@ PlanLabels labels_of(const Recipe& recipe, const Plan& plan) {
 ManifestSources manifest_sources(const Plan& plan, const ListedImages& images,
                                  const PlacedFiles& placed) {
   if (plan.labels.error) throw *plan.labels.error;
-  ManifestSources sources{{}, plan.labels.hash, hash_text(program_version())};
+  ManifestSources sources{{}, plan.labels.hash, hash_of_program()};
   HashStream listing;
   listing.add(sources.labels);
   for (const PlannedImage* image : images.made) {
@@ -280,7 +304,7 @@ ManifestSources manifest_sources(const Plan& plan, const ListedImages& images,
 
 std::optional<ManifestSources> sources_as_planned(const Plan& plan) {
   if (!plan.manifest.listing) return std::nullopt;
-  return ManifestSources{*plan.manifest.listing, plan.labels.hash, hash_text(program_version())};
+  return ManifestSources{*plan.manifest.listing, plan.labels.hash, hash_of_program()};
 }
 
 Hash128 what_is_made(const Plan& plan) {

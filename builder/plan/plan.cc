@@ -300,6 +300,17 @@ Concern count_names_by_case(const std::vector<PlannedImage>& images) {
   return concern;
 }
 
+std::set<std::string> classes_of(const std::vector<PlannedImage>& images) {
+  std::set<std::string> paths;
+  const Shared<std::string>* before = nullptr;
+  for (const PlannedImage& image : images) {
+    const Shared<std::string>& path = image.spec.class_path;
+    if (before == nullptr || !before->is_same(path)) paths.insert(*path);
+    before = &path;
+  }
+  return paths;
+}
+
 }  // namespace
 
 std::uint64_t PlannedImage::samples() const {
@@ -339,6 +350,8 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
         if (!damage.empty())
           plan.mended.try_emplace(image.spec.model_name,
                                   MendedModel{image.spec.model_file, damage});
+        plan.extents.try_emplace(image.spec.model_file->native(),
+                                 inputs.model_extent(image.spec.model_file));
         model = image.spec.model_file;
       }
       planner.plan(image, known);
@@ -355,6 +368,7 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
     }
     plan.images.push_back(std::move(image));
   });
+  plan.class_ids = class_ids(dataset.recipe, classes_of(plan.images));
   plan.placed = planner.placed();
   plan.to_remove = plan.placed->left_over(plan.images, shard);
   plan.forgets = planner.forgets();

@@ -95,6 +95,8 @@ struct Plan {
   std::shared_ptr<PlacedFiles> placed;        ///< as the plan found them; refers to the dataset
   std::int64_t data_version = 0;              ///< Database::data_version before anything was read
   std::map<std::string, MendedModel> mended;  ///< by model name, of all shards' images
+  ClassIds class_ids;                         ///< of all shards' images
+  std::map<std::string, MeshExtent> extents;  ///< by model file, of those that can be read
   /// Those of all shards' images that are known before any is made: assets_unphysical,
   /// sizes_unlikely, names_by_case, meshes_damaged, models_unlikely. Findings, but for names_by_case,
   /// were warned of when they were found.

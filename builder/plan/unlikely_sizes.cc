@@ -45,9 +45,8 @@ std::array<double, 2> half_picture(const ImageLengths& image) {
 bool is_camera_inside(const ImageLengths& image) {
   const Vec3d p = image.camera.position;
   const Box& box = image.model;
-  const Vec3d off = image.model_unsure * 0.5;  // half the box, which is in it but for odd bodies
-  return p.x > box.least.x + off.x && p.x < box.most.x - off.x && p.y > box.least.y + off.y &&
-         p.y < box.most.y - off.y && p.z > box.least.z && p.z < box.most.z;
+  return p.x > box.least.x && p.x < box.most.x && p.y > box.least.y && p.y < box.most.y &&
+         p.z > box.least.z && p.z < box.most.z;
 }
 
 /// Whether all corners of the box are outside of one side of what the camera sees, or behind it.
@@ -56,13 +55,12 @@ bool is_out_of_view(const ImageLengths& image) {
   const auto [half_width, half_height] = half_picture(image);
   std::array<bool, 5> outside{true, true, true, true, true};
   for (int corner = 0; corner < 8; ++corner) {
-    const auto pick = [&](int bit, double least, double most, double off) {
-      return (corner >> bit & 1) == 0 ? least - off : most + off;
+    const auto pick = [&](int bit, double least, double most) {
+      return (corner >> bit & 1) == 0 ? least : most;
     };
     const Box& box = image.model;
-    const Vec3d at = Vec3d{pick(0, box.least.x, box.most.x, image.model_unsure.x),
-                           pick(1, box.least.y, box.most.y, image.model_unsure.y),
-                           pick(2, box.least.z, box.most.z, image.model_unsure.z)} -
+    const Vec3d at = Vec3d{pick(0, box.least.x, box.most.x), pick(1, box.least.y, box.most.y),
+                           pick(2, box.least.z, box.most.z)} -
                      image.camera.position;
     // A lens sees a little around its middle.
     const double lens = image.camera.lens_radius_m * 2;
@@ -228,20 +226,11 @@ class Finder {
 
   ImageLengths lengths_of(const ImageSpec& spec) {
     if (!model_.is_same(spec.model_file)) {
-      box_ = normalised_box(inputs_.model_box(spec.model_file), recipe_.normalise);
+      box_ = normalised_box(inputs_.model_extent(spec.model_file), recipe_.normalise);
       model_ = spec.model_file;
     }
-    ImageLengths image{spec.camera,
-                       spec.engine.width,
-                       spec.engine.height,
-                       box_,
-                       {},
-                       inputs_.environment_facts(spec.environment_folder).longest_side_m};
-    if (recipe_.normalise.centre == Centring::mass) {
-      const Vec3d half = side_of(box_) * 0.5;
-      image.model_unsure = {half.x, half.y, 0};
-    }
-    return image;
+    return {spec.camera, spec.engine.width, spec.engine.height, box_,
+            inputs_.environment_facts(spec.environment_folder).longest_side_m};
   }
 
   const Recipe& recipe_;

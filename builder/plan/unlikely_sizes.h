@@ -15,8 +15,6 @@ struct ImageLengths {
   Camera camera;
   int width = 1, height = 1;
   Box model;
-  /// How far the box may be off in x and y: what moves the centre of mass to 0 is not known of it.
-  Vec3d model_unsure;
   double environment_m = 0;  ///< longest side of the box around its objects; 0: it has none
 };
 

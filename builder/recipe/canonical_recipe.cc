@@ -53,6 +53,13 @@ std::optional<std::string> own_text(const KeySpec& key, const Recipe& recipe) {
     return to_toml(recipe.test_classes->filename().string());
   if (key.name == "classes.from" && !recipe.classes_from.empty())
     return to_toml(recipe.classes_from);
+  if (key.name == "classes.ids" && !recipe.class_ids.empty()) return list_of(recipe.class_ids);
+  if (key.name == "classes.more" && !recipe.hierarchies.empty()) {
+    std::vector<std::string> names;
+    for (const Hierarchy& hierarchy : recipe.hierarchies)
+      names.push_back(hierarchy.name);
+    return list_of(names);
+  }
   return std::nullopt;
 }
 

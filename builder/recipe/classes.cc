@@ -1,55 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/recipe/classes.h"
 
-#include "manifests/class_table.h"
+#include "builder/recipe/class_files.h"
 #include "manifests/concerns.h"
-#include "tracer/base/files.h"
-#include "tracer/base/nearest.h"
 #include "tracer/scene/mesh_formats.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <map>
 #include <set>
-#include <system_error>
 
 namespace ds {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Where a class key leads: nothing where it is unset, or asks for a models.dir that the recipe
-/// does not use.
+/// Where a class key leads: nothing where it is unset.
 std::optional<fs::path> class_file(Settings& settings, const std::string& key) {
-  static constexpr std::string_view k_models_dir = "{models.dir}";
   const RecipeValue* value = settings.find(key);
   if (value == nullptr) return std::nullopt;
-  std::string text = *value->text();
-  if (const std::size_t at = text.find(k_models_dir); at != text.npos) {
-    const RecipeValue* dir = settings.find("models.dir");
-    if (dir == nullptr) {
-      settings.unset(key);
-      return std::nullopt;
-    }
-    text.replace(at, k_models_dir.size(), settings.resolve(*dir).string());
-  }
-  fs::path file = settings.resolve(*value, text);
-  std::error_code error;
-  if (fs::is_regular_file(file, error)) return file;
-  const RecipeValue* dir = settings.find("models.dir");
-  // A models.dir that is none has its own finding.
-  const bool of_dir = text != *value->text();
-  if (of_dir && dir != nullptr && !fs::is_directory(settings.resolve(*dir), error))
+  if (is_of_absent_folder(settings, *value)) {
+    settings.unset(key);
     return std::nullopt;
-  settings.complain(
-      *value, key,
-      fmt::format("must name a file, found none at {}{}", file.string(), similar_name(file)));
-  return std::nullopt;
-}
-
-/// Adds a parser's findings, which carry their own places, to the recipe's.
-void add_findings(const Error& error, Diagnostics& diagnostics) {
-  diagnostics.add({}, "{}", error.what());
+  }
+  return find_class_file(settings, *value, key);
 }
 
 std::optional<Classification> read_class_file(const std::optional<fs::path>& file,
@@ -76,18 +50,21 @@ std::string some_of(const std::vector<std::string>& names) {
 void refuse_second_labels(const Settings& settings, const Recipe& recipe,
                           const std::set<std::size_t>& used) {
   const Labels& labels = recipe.labels;
-  const auto text = [&](std::size_t entry) {
-    const ModelLabel& label = labels.label(entry);
-    return fmt::format("{} ({}, {})", labels.name(entry), label.class_path, label.split);
+  const auto text = [](const LabelledModel& entry) {
+    const auto& [path, split] = entry.label;
+    return fmt::format("{} ({}{}{})", entry.model, path, path.empty() || split.empty() ? "" : ", ",
+                       split);
   };
   for (const ModelFile& model : recipe.models) {
     const std::vector<std::size_t> entries = labels.find_all(model.name);
-    for (std::size_t i = 1; i < entries.size(); ++i)
-      if (!used.contains(entries[i]) && labels.label(entries[i]) != labels.label(entries[0]))
-        settings.complain(
-            labels.label(entries[0]).split == "test" ? "classes.test" : "classes.train",
-            fmt::format("must list {} once, found {} and {}", model.name, text(entries[0]),
-                        text(entries[i])));
+    for (std::size_t i = 1; i < entries.size(); ++i) {
+      if (used.contains(entries[i]) || labels.label(entries[i]) == labels.label(entries[0]))
+        continue;
+      const LabelledModel& first = labels.entry(entries[0]);
+      const LabelledModel& second = labels.entry(entries[i]);
+      settings.diagnostics().add(second.place, "must list {} once, found {} and, in {}, {}",
+                                 model.name, text(second), to_string(first.place), text(first));
+    }
   }
 }
 
@@ -173,7 +150,7 @@ struct ClassSource {
 std::vector<LabelledModel> labels_of_folders(const Recipe& recipe, std::size_t most) {
   std::vector<LabelledModel> models;
   for (const ModelFile& model : recipe.models) {
-    LabelledModel labelled{model.name, {}};
+    LabelledModel labelled{model.name, {}, {}};
     std::size_t levels = 0;
     for (const fs::path& folder : fs::path(model.below).parent_path()) {
       std::string& split = labelled.label.split;
@@ -193,13 +170,8 @@ constexpr ClassSource k_class_sources[] = {
      [](const fs::path&, const Recipe& recipe) { return labels_of_folders(recipe, 1); }},
     {"folders", false,
      [](const fs::path&, const Recipe& recipe) { return labels_of_folders(recipe, SIZE_MAX); }},
-    {".csv", true,
-     [](const fs::path& file, const Recipe&) {
-       return parse_class_table(read_text_file(file), file.string());
-     }},
-    {".cla", true, [](const fs::path& file, const Recipe&) {
-       return labelled_models(read_classification(file), "");
-     }}};
+    {".csv", true, [](const fs::path& file, const Recipe&) { return read_class_list(file); }},
+    {".cla", true, [](const fs::path& file, const Recipe&) { return read_class_list(file); }}};
 
 /// The row that a value of classes.from means; null, with a finding, for none.
 const ClassSource* source_of(Settings& settings, const RecipeValue& from) {
@@ -291,6 +263,10 @@ void read_classes(Settings& settings, Recipe& recipe) {
                         "must not be given where classes.from says what is train and test");
   }
   if ((has_files || has_source) && settings.diagnostics().empty()) match_labels(settings, recipe);
+  for (const auto& file : {recipe.train_classes, recipe.test_classes, recipe.class_table})
+    if (file) recipe.class_files.push_back(*file);
+  read_hierarchies(settings, recipe);
+  read_class_ids(settings, recipe);
 }
 
 }  // namespace ds

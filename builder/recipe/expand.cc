@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 #include <set>
 #include <span>
 #include <utility>
@@ -133,6 +134,14 @@ ModelLabel label_of(const Recipe& recipe, const std::string& model) {
   return {label.class_path, share < *recipe.split_test_fraction ? "test" : "train"};
 }
 
+std::map<std::string, std::string> other_classes_of(const Recipe& recipe,
+                                                    const std::string& model) {
+  std::map<std::string, std::string> classes;
+  for (const auto& [name, labels] : recipe.hierarchies)
+    classes.emplace(name, labels.find(model).value_or(ModelLabel{}).class_path);
+  return classes;
+}
+
 /// What stands behind model and view in an id.
 std::string suffix(const Recipe& recipe, const std::string& material,
                    const std::string& environment) {
@@ -148,6 +157,15 @@ void fit_image(ImageSpec& image, const Recipe& recipe, const Sphere& model) {
   if (!recipe.camera_fit) return;
   image.camera =
       fit_camera(image.camera, *recipe.camera_fit, model, image.engine.width, image.engine.height);
+}
+
+ClassIds class_ids(const Recipe& recipe, const std::set<std::string>& paths) {
+  ClassIds ids;
+  for (const std::string& path : recipe.class_ids)
+    ids.try_emplace(path, ids.size());
+  for (const std::string& path : paths)
+    if (!path.empty()) ids.try_emplace(path, ids.size());
+  return ids;
 }
 
 std::string material_name(const fs::path& file) {
@@ -180,6 +198,7 @@ void expand(const Recipe& recipe, const std::function<void(ImageSpec&&)>& visit)
     image.model_name = name;
     image.class_path = label.class_path;
     image.split = label.split;
+    if (!recipe.hierarchies.empty()) image.other_classes = other_classes_of(recipe, name);
     material_choice.start_model(name);
     environment_choice.start_model(name);
     for (std::size_t view = 0; view < recipe.cameras.size(); ++view) {

@@ -83,6 +83,18 @@ constexpr std::array k_keys = {
             "lies in) or \"folders\" (all folders down to it), or a file, .csv with columns name, "
             "class "
             "and split, or .cla: see Classes and splits"},
+    KeySpec{
+        "classes.more", manifest, path_list, "", "", k_any, "", "",
+        "Further classifications, .cla or .csv files, whose classes stand beside the others' in "
+        "the "
+        "manifest and can be exported in their place. One is called as its files are, less Train "
+        "or Test behind it: coarse1Train.cla and coarse1Test.cla are of coarse1"},
+    KeySpec{
+        "classes.ids", manifest, path, "", "", k_any, "", "",
+        "Text file of class paths, one a line: a class's id is its place, from 0. Classes that it "
+        "does "
+        "not name come behind, sorted, as all do without it; so a class that is added at its end "
+        "changes no other's id. dsbuild classes --ids prints one"},
     KeySpec{"classes.split.test", manifest, number, "", "", between(0, 1), "", "",
             "Share of the models to put into the test split, where nothing else says what is test. "
             "Without it there is no split"},

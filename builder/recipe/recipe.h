@@ -12,7 +12,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -58,6 +60,12 @@ struct ClassCoverage {
   bool missing_allowed = false, unlisted_allowed = false, unshared_allowed = false;
 };
 
+/// A classification beside the one that images are labelled with: "coarse1" of the benchmark.
+struct Hierarchy {
+  std::string name;
+  Labels labels;
+};
+
 /// A model's file, and what images, class files and the manifest call the model.
 struct ModelFile {
   std::string name;
@@ -84,6 +92,9 @@ struct Recipe {
   Labels labels;                                     ///< of both class files, or of classes.from
   std::vector<std::string> class_paths;              ///< of the same, sorted
   ClassCoverage coverage;
+  std::vector<Hierarchy> hierarchies;              ///< of classes.more, by name
+  std::vector<std::string> class_ids;              ///< of classes.ids: a class's id is its index
+  std::vector<std::filesystem::path> class_files;  ///< all that were read
   /// Where there are no class files and a split is wanted.
   std::optional<double> split_test_fraction;
   Assign assign_materials = Assign::random;
@@ -125,6 +136,7 @@ struct ImageSpec {
   EngineSettings engine;           ///< with this image's own seed, below 2^53
   Shared<std::string> class_path;  ///< "vehicle/car", "" where unclassified
   Shared<std::string> split;       ///< "train", "test" or "" where there is none
+  Shared<std::map<std::string, std::string>> other_classes;  ///< class path by Recipe::hierarchies
 };
 
 /// All images, ordered by model name, then view, then (with assign = all) material, then
@@ -142,6 +154,11 @@ void expand(const Recipe& recipe, const std::function<void(ImageSpec&&)>& visit)
 void check_ids(const Recipe& recipe);
 /// How many images `expand` gives.
 std::size_t image_count(const Recipe& recipe);
+
+/// Class path -> id, from 0 without gaps.
+using ClassIds = std::map<std::string, std::uint64_t, std::less<>>;
+/// Of classes.ids, in its order, and then of the paths that it does not name; "" is no class.
+ClassIds class_ids(const Recipe& recipe, const std::set<std::string>& paths);
 
 /// Moves an image's camera to where its model fits, which is that sphere, where the recipe wants
 /// that; else nothing. Throws what `fit_camera` throws.

@@ -35,8 +35,7 @@ std::map<fs::path, const char*> input_folders(const Recipe& recipe) {
   for (const fs::path& folder : recipe.environments)
     found.try_emplace(folder, "an environment");
   add(recipe.environments, "environments");
-  for (const auto& classes : {recipe.train_classes, recipe.test_classes, recipe.class_table})
-    if (classes) add({*classes}, "class files");
+  add(recipe.class_files, "class files");
   return found;
 }
 
@@ -70,8 +69,7 @@ void check_no_input_file(const fs::path& file, std::string_view option, const Re
   for (const ModelFile& model : recipe.models)
     inputs.push_back(model.file);
   inputs.insert(inputs.end(), recipe.materials.begin(), recipe.materials.end());
-  for (const auto& classes : {recipe.train_classes, recipe.test_classes, recipe.class_table})
-    if (classes) inputs.push_back(*classes);
+  inputs.insert(inputs.end(), recipe.class_files.begin(), recipe.class_files.end());
   for (const fs::path& input : inputs)
     if (fs::equivalent(file, input, error))
       fail(ErrorKind::usage, "{} {}: is read by the recipe and would be written over", option,

@@ -2,6 +2,7 @@
 #include "builder/store/made_record.h"
 
 #include "manifests/film_facts.h"
+#include "manifests/json_text.h"
 #include "tracer/base/error.h"
 
 #include <nlohmann/json.hpp>
@@ -79,7 +80,8 @@ std::vector<MadeProduct> from_record(const std::string& text) {
   } catch (const Error& error) {
     throw UnreadableRecord(fmt::format("a record of the store cannot be read: {}", error.what()));
   } catch (const json::exception& error) {
-    throw UnreadableRecord(fmt::format("a record of the store cannot be read: {}", error.what()));
+    throw UnreadableRecord(
+        fmt::format("a record of the store cannot be read: {}", json_fault(error)));
   }
   return made;
 }

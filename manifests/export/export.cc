@@ -78,6 +78,15 @@ class Export {
 
  private:
   void check_request();
+  void choose_classes();
+  /// Every image, of the classes that were asked for.
+  template <typename Visit>
+  void visit(const Visit& visit) const {
+    visit_images(request_.folder, [&](ImageRecord&& image) {
+      if (!request_.classes.empty()) image.class_path = image.other_classes[request_.classes];
+      visit(std::move(image));
+    });
+  }
   /// Why the image is not exported; "" where it is.
   std::string left_out(const ImageRecord& image) const;
   /// "train" where the dataset knows no splits: what readers take a dataset without any for.
@@ -99,6 +108,7 @@ class Export {
   const ExporterType* type_ = nullptr;
   ExportInput input_;
   bool has_classes_ = false, has_splits_ = false;
+  std::map<std::string, int> labels_;          ///< index of input_.classes
   std::set<std::string> splits_;               ///< of all images
   std::map<std::string, std::string> models_;  ///< by what their images' keys begin with
   std::set<std::string> shared_stems_;         ///< of several models
@@ -156,6 +166,29 @@ void check_split(const ImageRecord& image) {
          image.split);
 }
 
+void Export::choose_classes() {
+  const std::string& name = request_.classes;
+  std::vector<std::string> classes = input_.dataset.class_paths;
+  if (!name.empty()) {
+    const auto& known = input_.dataset.hierarchies;
+    const auto at = known.find(name);
+    if (at == known.end()) {
+      std::vector<std::string_view> names;
+      for (const auto& [other, paths] : known)
+        names.emplace_back(other);
+      fail(ErrorKind::usage, "--classes: wanted {}, got {}{}",
+           names.empty() ? "none, the recipe has no classes.more"
+                         : fmt::format("{}", fmt::join(names, " or ")),
+           name, did_you_mean(name, names));
+    }
+    classes = at->second;
+  }
+  has_classes_ = !classes.empty();
+  input_.classes = has_classes_ ? std::move(classes) : std::vector<std::string>{"object"};
+  for (const std::string& path : input_.classes)
+    labels_.emplace(path, static_cast<int>(labels_.size()));
+}
+
 void Export::look() {
   std::error_code error;
   if (!fs::is_regular_file(request_.folder / k_images, error))
@@ -165,9 +198,8 @@ void Export::look() {
   check_manifest(request_.folder);
   input_.folder = request_.folder;
   input_.dataset = read_dataset_manifest(request_.folder);
-  has_classes_ = !input_.dataset.class_paths.empty();
-  input_.classes = has_classes_ ? input_.dataset.class_paths : std::vector<std::string>{"object"};
-  visit_images(request_.folder, [&](const ImageRecord& image) {
+  choose_classes();
+  visit([&](const ImageRecord& image) {
     check_split(image);
     if (!image.split.empty()) splits_.insert(image.split);
   });
@@ -181,7 +213,7 @@ void Export::look() {
                        : "none, the dataset has no splits",
            split);
   std::optional<std::vector<std::string>> kinds;
-  visit_images(request_.folder, [&](const ImageRecord& image) {
+  visit([&](const ImageRecord& image) {
     if (const std::string why = left_out(image); !why.empty()) {
       ++result_.left_out[why];
       return;
@@ -220,8 +252,7 @@ std::string Export::values_of_filters() const {
                      [&](const auto& filter) { return filter.first == key; }))
       continue;
     std::set<std::string> values;
-    visit_images(request_.folder,
-                 [&](const ImageRecord& image) { values.emplace(value_of(image, key)); });
+    visit([&](const ImageRecord& image) { values.emplace(value_of(image, key)); });
     const std::size_t count = values.size();
     while (values.size() > k_most)
       values.erase(std::prev(values.end()));
@@ -258,7 +289,7 @@ void Export::add_key(const ImageRecord& image) {
 /// With their endings names of models may still be one: a "." and a "_" are. These get a hash.
 void Export::find_shared_names() {
   std::map<std::string, std::string> models;
-  visit_images(request_.folder, [&](const ImageRecord& image) {
+  visit([&](const ImageRecord& image) {
     if (!left_out(image).empty()) return;
     const KeyForm form = shared_stems_.contains(export_key(image.model, image.model, KeyForm::stem))
                              ? KeyForm::ending
@@ -298,6 +329,7 @@ std::string Export::record(const ExportFolder& to) const {
                          {"dsbuild_version", input_.dataset.dsbuild_version},
                          {"splits", input_.splits},
                          {"classes", input_.classes},
+                         {"hierarchy", request_.classes},
                          {"filters", input_.filters},
                          {"images", result_.images},
                          {"left_out", result_.left_out},
@@ -317,7 +349,7 @@ ExportResult Export::run(const std::function<void(std::uint64_t, std::uint64_t)>
   note_kinds(to);
   std::set<std::string> keys;
   std::uint64_t done = 0;
-  visit_images(request_.folder, [&](ImageRecord&& record) {
+  visit([&](ImageRecord&& record) {
     if (!left_out(record).empty()) return;
     if (stop) fail(ErrorKind::cancelled, "stopped; nothing is exported");
     ExportImage image{std::move(record), "", "", 0};
@@ -329,14 +361,13 @@ ExportResult Export::run(const std::function<void(std::uint64_t, std::uint64_t)>
     if (has_classes_ && image.record.class_path.empty()) {
       image.label = -1;
     } else if (has_classes_) {
-      const auto at =
-          std::lower_bound(input_.classes.begin(), input_.classes.end(), image.record.class_path);
-      if (at == input_.classes.end() || *at != image.record.class_path)
+      const auto at = labels_.find(image.record.class_path);
+      if (at == labels_.end())
         fail(ErrorKind::asset,
              "{}: the image {} is of the class {}, which the dataset does not have",
              (request_.folder / "manifest/dataset.json").string(), image.record.id,
              image.record.class_path);
-      image.label = static_cast<int>(at - input_.classes.begin());
+      image.label = at->second;
     }
     exporter->add(image);
     progress(++done, result_.images);

@@ -21,6 +21,7 @@ struct ExportRequest {
   /// class (or a class above it), model (with or without its ending), material, environment, view.
   /// Patterns: * any text, ? any character.
   std::vector<std::pair<std::string, std::string>> filters;
+  std::string classes{};  ///< of DatasetRecord::hierarchies, in place of class_path; "": class_path
   bool copy = false;
   /// What readers must know of the dataset, as that its recipe wants more: a warning, and in the card.
   std::vector<std::string> notes{};

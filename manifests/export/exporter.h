@@ -37,7 +37,7 @@ struct ExportImage {
 struct ExportInput {
   std::filesystem::path folder;  ///< the dataset's
   DatasetRecord dataset;
-  /// Class paths, sorted: a label is the index of one. {"object"} in a dataset without classes.
+  /// Class paths: a label is the index of one. {"object"} in a dataset without classes.
   std::vector<std::string> classes;
   std::map<std::string, std::uint64_t> splits;  ///< images that are exported, by split
   /// Kinds of files that every image has, "image" first.

@@ -58,9 +58,11 @@ class ForecastTest(TinyCase):
         self.assertFalse(self.out.exists(), "plan makes no dataset")
         self.assertEqual(self.forecast("--time")["measured"], 0, "the calibration is kept")
         self.build()
-        done = self.forecast("--time")
+        done = self.forecast("--time", "--recalibrate")
         self.assertEqual(done["seconds"]["value"], 0)
         self.assertEqual(done["bytes"]["value"], 0)
+        self.assertEqual(done["measured"], 0, "nothing to make, nothing to measure")
+        self.assertIn("nothing to make, so no time was measured", self.plan("--time").out)
 
     def test_disk_is_what_a_build_writes(self):
         told = self.forecast("--time", "--set", "engine.spp=16")

@@ -81,4 +81,7 @@ def main():
     TinyCase.dsbuild = os.path.abspath(sys.argv.pop(1))
     TinyCase.source = pathlib.Path(sys.argv.pop(1)).resolve()
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    unittest.main(verbosity=2)
+    result = unittest.main(verbosity=2, exit=False).result
+    if result.wasSuccessful() and len(result.skipped) == result.testsRun:
+        sys.exit(125)  # ctest says then that it was skipped
+    sys.exit(0 if result.wasSuccessful() else 1)

@@ -127,6 +127,12 @@ TEST(Classification, RefusesWhatIsNoClassFile) {
             "a.cla:2: must be the number of classes and of models, got \"-1 99999999999\"");
 }
 
+TEST(Classification, ModelsOfAClassThatIsNoneAreNoFindingsOfTheirOwn) {
+  EXPECT_EQ(findings("PSB 1\n2 2\nmug cup 0 1\nbunny\n"),
+            "a.cla:3: must be a class (name parent count) or a model (one word, or a file name "
+            "with its ending), got 4 words: mug cup 0 1");
+}
+
 TEST(Classification, ReportsEverythingTogether) {
   EXPECT_EQ(findings("PSB 1\n3 1\n7\na 0 x\na 0 0\nb/c 0 1\n1\ntwo words\n"),
             "a.cla:3: model 7 stands before the first class\n"

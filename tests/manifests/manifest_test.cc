@@ -54,6 +54,10 @@ class ManifestTest : public testing::Test {
       image.relative_error = 0.0625;
       image.rejected_samples = 3;
       image.pixel_counts = {30'000, 17, 4000, {}};
+      image.class_id = 7;
+      image.other_classes = {{"coarse", "vessel"}};
+      image.pose = {{0, 2, 0, 0.1 + 0.2, -2, 0, 0, 4, 0, 0, 2, 5, 0, 0, 0, 1},
+                    {{1, 2, 3}, {4, 5, 6}}};
       image.film.samples = 256 * 128 * 64;
       image.film.least_spp = image.film.most_spp = 64;
       image.film.negative_samples = 3;
@@ -104,6 +108,9 @@ TEST_F(ManifestTest, ReadsBackWhatWasWritten) {
     EXPECT_EQ(images[i].relative_error, 0.0625);
     EXPECT_EQ(images[i].film, images_[i].film);
     EXPECT_EQ(images[i].pixel_counts, images_[i].pixel_counts);
+    EXPECT_EQ(images[i].class_id, 7U);
+    EXPECT_EQ(images[i].other_classes, images_[i].other_classes);
+    EXPECT_EQ(images[i].pose, images_[i].pose);
     EXPECT_EQ(images[i].intrinsics, images_[i].intrinsics);
     EXPECT_EQ(images[i].camera_to_world, images_[i].camera_to_world);
     EXPECT_EQ(images[i].parts, images_[i].parts);
@@ -180,7 +187,9 @@ TEST_F(ManifestTest, LinesAreCanonical) {
                               "[0.0,-1.0,0.0,0.0],[0.0,0.0,0.0,1.0]]"));
   EXPECT_THAT(line, HasSubstr("\"tone_map_scale\":0.3333333333333333,"));
   EXPECT_EQ(line.find(' '), line.npos);
-  EXPECT_TRUE(line.starts_with("{\"camera_convention\":\"opencv\",\"camera_to_world\":"));
+  EXPECT_TRUE(
+      line.starts_with("{\"box_m\":[[4.3,-4.0,11.0],[10.3,2.0,17.0]],\"camera_convention\":"
+                       "\"opencv\",\"camera_to_world\":"));
   // Another JSON library's idea of sorted keys without spaces agrees but for the spelling of
   // numbers.
   const auto parsed = nlohmann::json::parse(line);
@@ -239,8 +248,30 @@ TEST_F(ManifestTest, ReadsLinesOfBeforeTheFilmsFacts) {
   nlohmann::json line = nlohmann::json::parse(to_json_line(images_[0]));
   line.erase("film");
   line.erase("pixel_counts");
+  for (const char* later : {"class_id", "classes", "model_to_world", "model_box", "box_m"})
+    line.erase(later);
+  EXPECT_FALSE(image_from_json_line(line.dump(), "images.jsonl", 1).pose);
   EXPECT_EQ(image_from_json_line(line.dump(), "images.jsonl", 1).film, FilmFacts{});
   EXPECT_EQ(image_from_json_line(line.dump(), "images.jsonl", 1).pixel_counts, PixelCounts{});
+}
+
+TEST_F(ManifestTest, SaysWhereTheModelIsInTheWorldAndInTheCamera) {
+  ImageRecord& image = images_[0];
+  // The camera at (10, 0, 0) looks back along x: right is y, down is -z.
+  image.camera_to_world = {0, 0, -1, 10, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, 1};
+  const auto line = nlohmann::json::parse(to_json_line(image));
+  // Twice as large, turned by -90 degrees about z, moved by (0.3, 4, 5).
+  EXPECT_EQ(line["box_m"], nlohmann::json::parse("[[4.3, -4.0, 11.0], [10.3, 2.0, 17.0]]"));
+  // The file's (0, 0, 0) is at (0.3, 4, 5): 4 to the right, 5 up, 9.7 before the camera.
+  const auto& cv = line["model_to_camera"]["opencv"];
+  EXPECT_EQ(cv[0], nlohmann::json::parse("[-2.0, 0.0, 0.0, 4.0]"));
+  EXPECT_EQ(cv[1], nlohmann::json::parse("[0.0, 0.0, -2.0, -5.0]"));
+  EXPECT_EQ(cv[2][1], -2.0);
+  EXPECT_DOUBLE_EQ(cv[2][3].get<double>(), 9.7);
+  const auto& gl = line["model_to_camera"]["opengl"];
+  EXPECT_EQ(gl[0], cv[0]);
+  EXPECT_EQ(gl[1], nlohmann::json::parse("[0.0, 0.0, 2.0, 5.0]"));
+  EXPECT_DOUBLE_EQ(gl[2][3].get<double>(), -9.7);
 }
 
 TEST_F(ManifestTest, NamesLineAndFieldOfEveryDamage) {

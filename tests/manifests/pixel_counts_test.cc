@@ -30,10 +30,18 @@ TEST(PixelCountsTest, a_mask_touches_the_frame_in_its_outer_rows_and_columns) {
       EXPECT_EQ(counts.model, 1U);
       EXPECT_EQ(counts.frame, inner ? 0U : 1U) << x << " " << y;
       EXPECT_FALSE(counts.lit || counts.white);
+      EXPECT_EQ(counts.left, static_cast<std::uint64_t>(x));
+      EXPECT_EQ(counts.right, static_cast<std::uint64_t>(k_width - 1 - x));
+      EXPECT_EQ(counts.above, static_cast<std::uint64_t>(y));
+      EXPECT_EQ(counts.below, static_cast<std::uint64_t>(k_height - 1 - y));
     }
   }
   const std::vector<std::uint8_t> full(k_width * k_height, 255);
   EXPECT_EQ(count_mask(full, k_width, k_height).frame, 14U);
+  EXPECT_EQ(count_mask(full, k_width, k_height).right, 0U);
+  const PixelCounts none = count_mask(std::vector<std::uint8_t>(20, 0), k_width, k_height);
+  EXPECT_EQ(none.left, 5U);
+  EXPECT_EQ(none.below, 4U);
 }
 
 TEST(PixelCountsTest, what_was_not_counted_stays_absent) {

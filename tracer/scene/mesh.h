@@ -279,8 +279,18 @@ struct Box {
 /// Of the triangles' corners, which all vertices are of a mesh that was read. Of none: all 0.
 Box bounds_of(const FileMesh& mesh);
 Box bounds_of(const Mesh& mesh);
-/// The box of the normalised mesh, from the file's; with Centring::mass as with Centring::box, since
-/// a box does not tell where the mass is.
-Box normalised_box(const Box& file, const NormaliseOptions& options);
+
+/// What decides where `normalise` places a mesh, in the file's coordinates.
+struct MeshExtent {
+  Box box;
+  Vec3d centroid;  ///< of the surface, weighted by area
+  bool operator==(const MeshExtent&) const = default;
+};
+MeshExtent extent_of(const FileMesh& mesh);
+/// Turns, scales and moves a file's coordinates as `normalise` does; its places are these to single
+/// floats.
+Mat4 model_to_world(const MeshExtent& file, const NormaliseOptions& options);
+/// The box of the normalised mesh.
+Box normalised_box(const MeshExtent& file, const NormaliseOptions& options);
 
 }  // namespace ds

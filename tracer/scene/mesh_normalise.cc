@@ -77,23 +77,35 @@ Vec3d surface_centroid(const std::vector<Vec3d>& positions, const std::vector<Tr
   return area > 0 ? origin + sum * (1 / area) : origin;
 }
 
-/// Which point becomes the origin, before scaling.
-Vec3d centre_of(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
-                const Box& box, const NormaliseOptions& options) {
-  const Vec3d middle = (box.least + box.most) * 0.5;
+Vec3d middle_of(const Box& box) {
+  return (box.least + box.most) * 0.5;
+}
+
+/// Which point becomes the origin, before scaling; of a mesh that is turned.
+Vec3d centre_of(const MeshExtent& mesh, const NormaliseOptions& options) {
   Vec3d centre;
-  if (options.centre == Centring::mass) centre = surface_centroid(positions, triangles, middle);
-  if (options.centre == Centring::box) centre = middle;
-  centre.z = options.place_on_ground ? box.least.z : 0;
+  if (options.centre == Centring::mass) centre = mesh.centroid;
+  if (options.centre == Centring::box) centre = middle_of(mesh.box);
+  centre.z = options.place_on_ground ? mesh.box.least.z : 0;
   return centre;
+}
+
+MeshExtent extent_of(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles) {
+  const Box box = bounds(positions);
+  return {box, surface_centroid(positions, triangles, middle_of(box))};
+}
+
+MeshExtent turned(const MeshExtent& mesh, UpAxis up) {
+  return {bounds(std::vector<Vec3d>{turned(mesh.box.least, up), turned(mesh.box.most, up)}),
+          turned(mesh.centroid, up)};
 }
 
 std::vector<Vec3> placed_positions(const std::vector<Vec3d>& positions,
                                    const std::vector<Triangle>& triangles,
                                    const NormaliseOptions& options) {
-  const Box box = bounds(positions);
-  const double scale = scale_of(box, options);
-  const Vec3d centre = centre_of(positions, triangles, box, options);
+  const MeshExtent extent = extent_of(positions, triangles);
+  const double scale = scale_of(extent.box, options);
+  const Vec3d centre = centre_of(extent, options);
   const Vec3d ground = ground_of(options);
   std::vector<Vec3> placed;
   placed.reserve(positions.size());
@@ -215,14 +227,30 @@ Box bounds_of(const Mesh& mesh) {
   return bounds(mesh.positions);
 }
 
-Box normalised_box(const Box& file, const NormaliseOptions& options) {
-  const Box box =
-      bounds(std::vector<Vec3d>{turned(file.least, options.up), turned(file.most, options.up)});
-  NormaliseOptions by_box = options;
-  if (by_box.centre == Centring::mass) by_box.centre = Centring::box;
-  const double scale = scale_of(box, options);
-  const Vec3d centre = centre_of({}, {}, box, by_box), ground = ground_of(options);
-  return {(box.least - centre) * scale + ground, (box.most - centre) * scale + ground};
+MeshExtent extent_of(const FileMesh& mesh) {
+  return extent_of(mesh.positions, mesh.triangles);
+}
+
+Mat4 model_to_world(const MeshExtent& file, const NormaliseOptions& options) {
+  const MeshExtent mesh = turned(file, options.up);
+  const double scale = scale_of(mesh.box, options);
+  const Vec3d move = ground_of(options) - centre_of(mesh, options) * scale;
+  Mat4 matrix;
+  const std::array axes{turned(Vec3d{1, 0, 0}, options.up), turned(Vec3d{0, 1, 0}, options.up),
+                        turned(Vec3d{0, 0, 1}, options.up)};
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 3; ++column)
+      matrix.m[4 * row + column] = scale * axes[column][static_cast<int>(row)];
+    matrix.m[4 * row + 3] = move[static_cast<int>(row)];
+  }
+  return matrix;
+}
+
+Box normalised_box(const MeshExtent& file, const NormaliseOptions& options) {
+  const MeshExtent mesh = turned(file, options.up);
+  const double scale = scale_of(mesh.box, options);
+  const Vec3d centre = centre_of(mesh, options), ground = ground_of(options);
+  return {(mesh.box.least - centre) * scale + ground, (mesh.box.most - centre) * scale + ground};
 }
 
 }  // namespace ds

@@ -85,9 +85,9 @@ TEST(Database, KnowsAFileByEveryPartOfItsStamp) {
 
 TEST(Database, KeepsModelsByTheVersionOfTheirReader) {
   Database database({});
-  const Box box{{-0.1, 1.0 / 3, -7e17}, {0, 1e-300, 5}};
-  const KnownModel whole{{k_b, {}, {}, {}}, {}, box};
-  const KnownModel mended{{k_b, k_a, k_b, k_a}, {{"out_of_range", 2}, {"non_finite", 1}}, box};
+  const MeshExtent extent{{{-0.1, 1.0 / 3, -7e17}, {0, 1e-300, 5}}, {-0.05, 0.1, -1e17}};
+  const KnownModel whole{{k_b, {}, {}, {}}, {}, extent};
+  const KnownModel mended{{k_b, k_a, k_b, k_a}, {{"out_of_range", 2}, {"non_finite", 1}}, extent};
   database.put_model(k_a, 1, whole);
   EXPECT_EQ(database.find_model(k_a, 1), whole);
   EXPECT_FALSE(database.find_model(k_a, 2));
@@ -235,7 +235,7 @@ TEST(Database, ForgetsModelsOfVersionSevenWhoseExtrasAreNotKnown) {
   { Database(file).put_model(k_a, 1, model); }
   Connection(file).execute(
       "ALTER TABLE geometry DROP COLUMN uvs; ALTER TABLE geometry DROP COLUMN colors; "
-      "ALTER TABLE geometry DROP COLUMN box; DROP TABLE image_bounds; PRAGMA user_version = 7");
+      "ALTER TABLE geometry DROP COLUMN extent; DROP TABLE image_bounds; PRAGMA user_version = 7");
   Database database(file);
   EXPECT_FALSE(database.find_model(k_a, 1));
   database.put_model(k_a, 1, model);
@@ -249,6 +249,20 @@ TEST(Database, ForgetsModelsOfVersionNineWhoseNormalsAreNotApart) {
   const KnownModel model{{k_b, k_a, {}, k_b}, {}, {}};
   { Database(file).put_model(k_a, 1, model); }
   Connection(file).execute("ALTER TABLE geometry DROP COLUMN normals; PRAGMA user_version = 9");
+  Database database(file);
+  EXPECT_FALSE(database.find_model(k_a, 1));
+  database.put_model(k_a, 1, model);
+  EXPECT_EQ(database.find_model(k_a, 1), model);
+}
+
+TEST(Database, ForgetsModelsOfVersionTenWhoseCentroidIsNotKnown) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "db.sqlite";
+  const KnownModel model{{k_b, k_a, {}, k_b}, {}, {{{1, 2, 3}, {4, 5, 6}}, {2, 3, 4}}};
+  { Database(file).put_model(k_a, 1, model); }
+  Connection(file).execute(
+      "ALTER TABLE geometry RENAME COLUMN extent TO box; UPDATE geometry SET box = "
+      "'[1,2,3,4,5,6]'; PRAGMA user_version = 10");
   Database database(file);
   EXPECT_FALSE(database.find_model(k_a, 1));
   database.put_model(k_a, 1, model);

@@ -35,6 +35,7 @@ class Moving : public TinyDataset {
       write_file_atomic(recipe_folder() / name, text);
     };
     put("all.cla", "PSB 1\n1 2\n\nthing 0 2\nbox\ntetra\n");
+    put("ids.txt", "other\nthing\n");
     put("box.cla", "PSB 1\n1 1\n\nthing 0 1\nbox\n");
     std::filesystem::create_directories(recipe_folder() / "models/more");
     std::filesystem::copy(recipe_folder() / "models/box.off",
@@ -114,6 +115,8 @@ std::vector<Flip> Moving::flips() const {
       {"classes.train", "\"\"", path("all.cla")},
       {"classes.test", "\"\"", path("all.cla")},
       {"classes.from", "\"folder\"", "\"folders\"", {"models.recursive=true"}},
+      {"classes.more", "[]", paths("all.cla")},
+      {"classes.ids", "\"\"", path("ids.txt"), {"classes.from=" + path("all.cla")}},
       {"classes.split.test", "0.1", "0.9"},
       {"classes.missing", "\"ignore\"", "\"error\"", {"classes.train=" + path("all.cla")}},
       {"classes.unlisted", "\"keep\"", "\"skip\"", {"classes.train=" + path("box.cla")}},

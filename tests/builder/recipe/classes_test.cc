@@ -99,9 +99,10 @@ TEST_F(RecipeClassesTest, ThatHaveModelsInOneFileOnlyAreCounted) {
 
 TEST_F(RecipeClassesTest, OfOneModelAgreeWhateverItIsCalled) {
   folder_.add("test.cla", "PSB 1\n1 1\nplant 0 1\ncar.ply\n");
-  EXPECT_THAT(folder_.findings(k_both),
-              HasSubstr("classes.test must list car.ply once, found car.ply (plant, test) and car "
-                        "(thing/vehicle, train)"));
+  EXPECT_THAT(
+      folder_.findings(k_both),
+      HasSubstr("train.cla:5: must list car.ply once, found car (thing/vehicle, train) and, in "
+                "test.cla:4, car.ply (plant, test)"));
   // The name without an ending is another file's.
   folder_.add("models/car.off");
   EXPECT_EQ(folder_.findings(k_both), "");

@@ -348,6 +348,12 @@ void expect_near(Vec3d a, Vec3d b) {
     EXPECT_NEAR(a[axis], b[axis], 1e-5 * (1 + std::abs(a[axis])));
 }
 
+Vec3d moved(const Mat4& matrix, Vec3d p) {
+  const auto& m = matrix.m;
+  return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+          m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
+}
+
 TEST(NormalisedBox, IsTheBoxOfTheNormalisedMesh) {
   const FileMesh source = model(sheet_off());
   NormaliseOptions options;
@@ -357,19 +363,34 @@ TEST(NormalisedBox, IsTheBoxOfTheNormalisedMesh) {
         options.up = up;
         options.size_m = size_m;
         options.place_on_ground = on_ground;
-        for (const Centring centre : {Centring::none, Centring::box}) {
+        for (const Centring centre : {Centring::none, Centring::box, Centring::mass}) {
           options.centre = centre;
-          const Box box = normalised_box(bounds_of(source), options);
-          const Box placed = bounds_of(normalise(source, options));
+          const Box box = normalised_box(extent_of(source), options);
+          const Mesh mesh = normalise(source, options);
+          const Box placed = bounds_of(mesh);
           expect_near(box.least, placed.least);
           expect_near(box.most, placed.most);
+          const Mat4 matrix = model_to_world(extent_of(source), options);
+          for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+            for (std::size_t c = 0; c < 3; ++c)
+              expect_near(moved(matrix, source.positions[source.triangles[t][c]]),
+                          to_double(mesh.positions[mesh.triangles[t][c]]));
         }
-        options.centre = Centring::mass;
-        const Box box = normalised_box(bounds_of(source), options);
-        const Box placed = bounds_of(normalise(source, options));
-        expect_near(box.most - box.least, placed.most - placed.least);
-        EXPECT_NEAR(box.least.z, placed.least.z, 1e-5 * (1 + std::abs(placed.least.z)));
       }
+}
+
+TEST(ModelToWorld, IsWhatTheRecipeSays) {
+  // A box of 2 x 4 x 1 with its least corner at (10, 20, 30), y up; two of its faces weigh more.
+  const MeshExtent file{{{10, 20, 30}, {12, 24, 31}}, {11, 21, 30.5}};
+  NormaliseOptions options;
+  options.size_m = 8;  // twice as large
+  options.ground_z_m = 0.5;
+  const Mat4 matrix = model_to_world(file, options);
+  // x stays, y becomes z, z becomes -y; the centroid is at x = y = 0, the least y on the ground.
+  EXPECT_EQ(moved(matrix, {11, 20, 30.5}), (Vec3d{0, 0, 0.5}));
+  EXPECT_EQ(moved(matrix, {12, 24, 31}), (Vec3d{2, -1, 8.5}));
+  EXPECT_EQ(moved(matrix, {10, 20, 30}), (Vec3d{-2, 1, 0.5}));
+  EXPECT_EQ(normalised_box(file, options), (Box{{-2, -1, 0.5}, {2, 1, 8.5}}));
 }
 
 }  // namespace

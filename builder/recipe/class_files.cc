@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/recipe/class_files.h"
+
+#include "manifests/class_table.h"
+#include "tracer/base/files.h"
+#include "tracer/base/nearest.h"
+#include "tracer/base/text_lines.h"
+#include "tracer/scene/mesh_formats.h"
+
+#include <algorithm>
+#include <map>
+#include <system_error>
+#include <utility>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view k_models_dir = "{models.dir}";
+
+/// "coarse1" of "coarse1Train" and of "coarse1_test"; "" of "train".
+std::string less_split(std::string stem) {
+  for (const std::string_view split : {"Train", "Test", "train", "test"}) {
+    if (!stem.ends_with(split)) continue;
+    stem.resize(stem.size() - split.size());
+    while (!stem.empty() && std::string_view("-_. ").find(stem.back()) != std::string_view::npos)
+      stem.pop_back();
+    break;
+  }
+  return stem;
+}
+
+std::string hierarchy_name(const fs::path& file) {
+  std::string name = less_split(file.stem().string());
+  return name.empty() ? file.parent_path().filename().string() : name;
+}
+
+std::string_view trimmed(std::string_view line) {
+  constexpr std::string_view k_blank = " \t";
+  const std::size_t begin = line.find_first_not_of(k_blank);
+  if (begin == line.npos || line[begin] == '#') return {};
+  return line.substr(begin, line.find_last_not_of(k_blank) - begin + 1);
+}
+
+}  // namespace
+
+bool is_of_absent_folder(const Settings& settings, const RecipeValue& path) {
+  return path.text()->find(k_models_dir) != std::string::npos &&
+         settings.find("models.dir") == nullptr;
+}
+
+std::optional<fs::path> find_class_file(const Settings& settings, const RecipeValue& path,
+                                        const std::string& key) {
+  std::string text = *path.text();
+  const RecipeValue* dir = settings.find("models.dir");
+  const std::size_t at = text.find(k_models_dir);
+  if (at != text.npos && dir == nullptr) return std::nullopt;
+  if (at != text.npos) text.replace(at, k_models_dir.size(), settings.resolve(*dir).string());
+  fs::path file = settings.resolve(path, text);
+  std::error_code error;
+  if (fs::is_regular_file(file, error)) return file;
+  // A models.dir that is none has its own finding.
+  if (at != text.npos && dir != nullptr && !fs::is_directory(settings.resolve(*dir), error))
+    return std::nullopt;
+  settings.complain(
+      path, key,
+      fmt::format("must name a file, found none at {}{}", file.string(), similar_name(file)));
+  return std::nullopt;
+}
+
+std::vector<LabelledModel> read_class_list(const fs::path& file) {
+  if (has_ending(file, ".csv")) return parse_class_table(read_text_file(file), file.string());
+  return labelled_models(read_classification(file), "");
+}
+
+void add_findings(const Error& error, Diagnostics& diagnostics) {
+  diagnostics.add({}, "{}", error.what());
+}
+
+void read_hierarchies(const Settings& settings, Recipe& recipe) {
+  const RecipeValue* files = settings.find("classes.more");
+  if (files == nullptr) return;
+  Diagnostics& diagnostics = settings.diagnostics();
+  std::map<std::string, std::map<std::string, LabelledModel>> found;
+  for (const RecipeValue& value : *files->array()) {
+    const auto file = find_class_file(settings, value, "classes.more");
+    if (!file) continue;
+    if (!has_ending(*file, ".cla") && !has_ending(*file, ".csv")) {
+      settings.complain(value, "classes.more",
+                        fmt::format("must be .cla and .csv files, got {:?}", *value.text()));
+      continue;
+    }
+    recipe.class_files.push_back(*file);
+    try {
+      auto& models = found[hierarchy_name(*file)];
+      for (LabelledModel& model : read_class_list(*file)) {
+        const auto [first, is_new] = models.try_emplace(model.model, model);
+        if (!is_new)
+          diagnostics.add(model.place, "model {} stands in {} already", model.model,
+                          to_string(first->second.place));
+      }
+    } catch (const Error& error) {
+      add_findings(error, diagnostics);
+    }
+  }
+  for (auto& [name, models] : found) {
+    std::vector<LabelledModel> list;
+    for (auto& [model, labelled] : models)
+      list.push_back(std::move(labelled));
+    recipe.hierarchies.push_back({name, Labels(list)});
+  }
+}
+
+void read_class_ids(const Settings& settings, Recipe& recipe) {
+  const RecipeValue* value = settings.find("classes.ids");
+  if (value == nullptr) return;
+  const auto file = find_class_file(settings, *value, "classes.ids");
+  if (!file) return;
+  recipe.class_files.push_back(*file);
+  Diagnostics& diagnostics = settings.diagnostics();
+  std::map<std::string, int, std::less<>> lines;
+  try {
+    const std::string text = read_text_file(*file);
+    std::string_view rest = without_bom(text);
+    for (int line = 1; !rest.empty(); ++line) {
+      const std::string_view path = trimmed(take_line(rest));
+      if (path.empty()) continue;
+      const SourcePlace place{file->string(), line, 0};
+      const auto [first, is_new] = lines.try_emplace(std::string(path), line);
+      if (!is_new)
+        diagnostics.add(place, "class {} stands in line {} already", path, first->second);
+      if (!is_class_path(path))
+        diagnostics.add(place, "a class must be names with / between, none of 0 . .., got \"{}\"",
+                        path);
+      recipe.class_ids.emplace_back(path);
+    }
+    if (is_utf16(text)) diagnostics.add({file->string()}, "{}", k_utf16_message);
+  } catch (const Error& error) {
+    add_findings(error, diagnostics);
+  }
+}
+
+}  // namespace ds

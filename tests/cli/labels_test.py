@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where the model of an image stands, and the classes: what the manifest says, by projection and by hand."""
+import itertools
+import json
+
+from harness import IMAGES, TinyCase, main
+from image_reader import read_png
+
+SIZE = ["--set", "engine.width=128", "--set", "engine.height=96"]
+
+
+def corners_of(name, text):
+    """The vertices that stand in a file of the tiny dataset."""
+    lines = text.splitlines()
+    first, count = (3, 8) if name.endswith(".off") else (lines.index("end_header") + 1, 4)
+    return [tuple(map(float, line.split()[:3])) for line in lines[first:first + count]]
+
+
+def moved(matrix, point):
+    return [sum(m * p for m, p in zip(row, (*point, 1))) for row in matrix[:3]]
+
+
+def product(a, b):
+    return [[sum(a[i][k] * b[k][j] for k in range(4)) for j in range(4)] for i in range(4)]
+
+
+def inverse_of_pose(pose):
+    turn = [[pose[j][i] for j in range(3)] for i in range(3)]
+    move = [-sum(turn[i][k] * pose[k][3] for k in range(3)) for i in range(3)]
+    return [turn[i] + [move[i]] for i in range(3)] + [[0, 0, 0, 1]]
+
+
+class LabelsTest(TinyCase):
+    def records(self):
+        return [json.loads(line) for line in (self.out / "manifest/images.jsonl").read_text().splitlines()]
+
+    def dataset(self):
+        return json.loads((self.out / "manifest/dataset.json").read_text())
+
+    def assert_close(self, a, b, delta=1e-9):
+        for x, y in zip(itertools.chain.from_iterable(a), itertools.chain.from_iterable(b)):
+            self.assertAlmostEqual(x, y, delta=delta)
+
+    def mask_of(self, record):
+        path = next(file["path"] for file in record["files"] if file["kind"] == "mask")
+        width, height, _, _, values = read_png(self.out / path)
+        return [(i % width, i // width) for i, value in enumerate(values) if value], width, height
+
+    def test_vertices_of_the_file_are_projected_to_the_mask(self):
+        for more in ([], ["--set", "models.up=z", "--set", "models.centre=box", "--set", "models.size_m=0.1"],
+                     ["--set", "models.centre=none", "--set", "models.size_m=0", "--set", "camera.distance_m=7",
+                      "--set", "models.ground_z_m=false"]):
+            self.build(*SIZE, *more)
+            for record in self.records():
+                model = corners_of(record["model"], (self.tiny / "models" / record["model"]).read_text())
+                pixels, _, _ = self.mask_of(record)
+                to_camera = product(inverse_of_pose(record["camera_to_world"]), record["model_to_world"])
+                k = record["intrinsics"]
+                seen = [[k[i][i] * p[i] / p[2] + k[i][2] for i in range(2)]
+                        for p in (moved(to_camera, corner) for corner in model)]
+                x, y, width, height = record["box"]
+                # All of a convex body whose corners are in the picture, and nothing stands before it.
+                for axis, first, size in ((0, x, width), (1, y, height)):
+                    ends = [s[axis] for s in seen]
+                    self.assertAlmostEqual(min(ends), first, delta=1.01, msg=record["id"])
+                    self.assertAlmostEqual(max(ends), first + size, delta=1.01, msg=record["id"])
+                self.assertEqual([x, y, x + width - 1, y + height - 1],
+                                 [f(p[axis] for p in pixels) for f in (min, max) for axis in (0, 1)])
+                # The boxes hold the vertices and are tight.
+                for matrix, box in ((None, "model_box"), (record["model_to_world"], "box_m")):
+                    points = [moved(matrix, p) if matrix else p for p in model]
+                    ends = [[f(p[axis] for p in points) for axis in range(3)] for f in (min, max)]
+                    self.assert_close(record[box], ends)
+                self.assert_close(record["model_to_camera"]["opencv"], to_camera)
+                flip = [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]
+                self.assert_close(record["model_to_camera"]["opengl"], product(flip, to_camera))
+
+    def test_box_is_null_where_nothing_is_seen(self):
+        self.build("--set", "models.centre=none", "--set", "models.size_m=0.16", "--set", "camera.target=[0,0,9]",
+                   "--set", "camera.distance_m=1")
+        for record in self.records():
+            self.assertIsNone(record["box"])
+            self.assertEqual(record["pixel_counts"]["model"], 0)
+
+    def test_lines_of_before_get_the_boxes_without_tracing(self):
+        self.build()
+        before = self.contents()
+        database = self.out / ".dsbuild/dsbuild.sqlite"
+        import sqlite3  # what an older dsbuild left: no sides in the database, and another writer's manifest
+        with sqlite3.connect(database) as connection:
+            for key, facts in connection.execute("SELECT key, facts FROM product WHERE kind = 'mask'").fetchall():
+                facts = json.loads(facts)
+                for side in ("left", "right", "above", "below"):
+                    del facts["pixel_counts"][side]
+                connection.execute("UPDATE product SET facts = ? WHERE key = ?", (json.dumps(facts), key))
+            connection.execute("UPDATE placed SET product = ? WHERE kind = 'manifest'", ("0" * 32,))
+        connection.close()
+        self.assertIn("without fields", self.run_it("plan", self.recipe, "-o", self.out).out)
+        self.assert_counts(self.build(), traced=0, reused=IMAGES)
+        self.assertEqual(self.contents(), before)
+
+    def classes(self, *arguments):
+        return self.run_it("classes", self.recipe, *arguments)
+
+    def write_classes(self, text, ids=None):
+        (self.tiny / "classes.csv").write_text("name,class\n" + text)
+        more = ["--set", f"classes.from={self.tiny / 'classes.csv'}"]
+        if ids is not None:
+            (self.tiny / "ids.txt").write_text(ids)
+            more += ["--set", f"classes.ids={self.tiny / 'ids.txt'}"]
+        return more
+
+    def ids(self):
+        return {(record["class_path"], record["class_id"]) for record in self.records()}
+
+    def test_ids_are_sorted_or_as_listed(self):
+        more = self.write_classes("box,thing/crate\ntetra,solid\n")
+        self.build(*more)
+        self.assertEqual(self.ids(), {("solid", 0), ("thing/crate", 1)})
+        self.assertEqual(self.dataset()["class_paths"], ["solid", "thing/crate"])
+        self.assertEqual(self.classes(*more, "--ids").out, "solid\nthing/crate\n")
+        # Kept, with a class that has no model yet, whatever comes behind.
+        more = self.write_classes("box,thing/crate\ntetra,anything\n", "# mine\nthing/crate\nsolid\n")
+        self.assertIn("class ids: anything, solid, thing/crate", self.run_it("plan", self.recipe, "-o", self.out, *more).out)
+        self.assert_counts(self.build(*more), traced=0)
+        self.assertEqual(self.ids(), {("thing/crate", 0), ("anything", 2)})
+        self.assertEqual(self.dataset()["class_paths"], ["thing/crate", "solid", "anything"])
+        listed = {entry["path"]: entry for entry in self.classes(*more, "--json").json["classes"]}
+        self.assertEqual((listed["thing"]["id"], listed["thing"]["models"], listed["thing"]["images"]), (None, 1, 4))
+        self.assertEqual((listed["solid"]["id"], listed["solid"]["models"]), (1, 0))
+
+    def test_ids_that_cannot_be_meant_are_named_by_line(self):
+        for text, why in (("a\nb\na\n", "ids.txt:3: class a stands in line 1 already"),
+                          ("a//b\n", "ids.txt:1: a class must be names with / between")):
+            run = self.run_it("plan", self.recipe, *self.write_classes("box,a\n", text))
+            self.assertEqual(run.code, 2, run)
+            self.assertIn(why, run.err)
+
+    def test_further_classifications_stand_beside(self):
+        for name, text in {"coarseTrain.cla": "PSB 1\n1 1\nbody 0 1\nbox\n",
+                           "coarseTest.cla": "PSB 1\n2 1\nbody 0 0\nsharp body 1\ntetra\n",
+                           "kind.csv": "name,class\nbox,flat\n"}.items():
+            (self.tiny / name).write_text(text)
+        files = json.dumps([str(self.tiny / name) for name in ("coarseTrain.cla", "coarseTest.cla", "kind.csv")])
+        more = [*self.write_classes("box,crate\ntetra,solid\n"), "--set", f"classes.more={files}"]
+        self.build(*more)
+        self.assertEqual({(r["model"], r["classes"]["coarse"], r["classes"]["kind"]) for r in self.records()},
+                         {("box.off", "body", "flat"), ("tetra.ply", "body/sharp", "")})
+        self.assertEqual(self.dataset()["hierarchies"], {"coarse": ["body", "body/sharp"], "kind": ["flat"]})
+        for line in (self.out / "manifest/images.jsonl").read_text().splitlines():
+            self.assertEqual(list(json.loads(line)), sorted(json.loads(line)), "keys are sorted")
+        self.assert_counts(self.build(*more), built=0)
+        self.assertIn("also coarse: --classes coarse", self.classes(*more).out)
+        table = self.classes(*more, "--classes", "coarse", "--json").json["classes"]
+        self.assertEqual([(row["path"], row["id"], row["models"]) for row in table], [("body", 0, 2), ("body/sharp", 1, 1)])
+        to = self.folder / "export"
+        run = self.run_it("export", self.out, "--format", "csv", "--classes", "coarse", "-o", to)
+        self.assertEqual(run.code, 0, run)
+        self.assertIn("body/sharp", "".join(path.read_text() for path in to.rglob("*.csv")))
+        run = self.run_it("export", self.out, "--format", "csv", "--classes", "corse", "-o", self.folder / "no")
+        self.assertEqual(run.code, 2)
+        self.assertIn("--classes: wanted coarse or kind, got corse, did you mean coarse?", run.err)
+        # A class that moves is known by plan, and written without tracing.
+        (self.tiny / "kind.csv").write_text("name,class\nbox,round\n")
+        self.assertIn("classes.more of 4 images", self.run_it("plan", self.recipe, "-o", self.out, *more).out)
+        self.assert_counts(self.build(*more), traced=0)
+        self.assertEqual(self.dataset()["hierarchies"]["kind"], ["round"])
+
+    def test_one_model_twice_is_named_with_both_places(self):
+        for name in ("aTrain.cla", "aTest.cla"):
+            (self.tiny / name).write_text("PSB 1\n1 1\nbody 0 1\nbox\n")
+        files = json.dumps([str(self.tiny / name) for name in ("aTrain.cla", "aTest.cla")])
+        run = self.run_it("plan", self.recipe, "--set", f"classes.more={files}")
+        self.assertEqual(run.code, 2, run)
+        self.assertRegex(run.err, r"aTest\.cla:4: model box stands in \S+aTrain\.cla:4 already")
+
+
+if __name__ == "__main__":
+    main()
