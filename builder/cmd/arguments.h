@@ -22,6 +22,7 @@ struct Arguments {
   std::string shard = "1/1";
   std::uint64_t rerender = 0, seed = 0;
   std::string format, export_folder, hierarchy;
+  std::string import_from, import_psb, import_folder;
   std::vector<std::string> splits, filters, only;
   std::string report_file, against;
   int most_spp = 0, seeds = 4;
@@ -44,6 +45,9 @@ struct Arguments {
 /// The options a verb can have. Each is declared once, in command_line.cc.
 enum class Option {
   target,
+  import_from,
+  import_folder,
+  copy_models,
   optional_target_and_image,
   topic,
   overrides,

@@ -5,12 +5,12 @@
 #include "builder/cmd/progress.h"
 #include "builder/cmd/stop_signal.h"
 #include "builder/cmd/verbs.h"
+#include "builder/cmd/work_progress.h"
 #include "builder/plan/plan.h"
 #include "tracer/base/error.h"
 #include "tracer/base/log.h"
 #include "tracer/base/streams.h"
 
-#include <chrono>
 #include <filesystem>
 
 namespace ds {
@@ -47,28 +47,9 @@ std::vector<std::pair<std::string, std::string>> filters_of(const Arguments& arg
   return filters;
 }
 
-/// A line on a terminal, a few times a second.
-class ExportProgress {
- public:
-  ExportProgress() : moves_(has_status_line()) {}
-  ~ExportProgress() { clear_status_line(); }
-  ExportProgress(const ExportProgress&) = delete;
-  ExportProgress& operator=(const ExportProgress&) = delete;
-  void operator()(std::uint64_t done, std::uint64_t all) {
-    const auto now = std::chrono::steady_clock::now();
-    if (!moves_ || (now - shown_ < std::chrono::milliseconds(200) && done < all)) return;
-    shown_ = now;
-    show_status_line(fmt::format("{} of {} images exported", done, all));
-  }
-
- private:
-  bool moves_;
-  std::chrono::steady_clock::time_point shown_{};
-};
-
 ExportResult run(const ExportRequest& request) {
   const std::atomic<bool>& stop = stop_on_signal();
-  ExportProgress progress;
+  WorkProgress progress("images exported");
   return export_dataset(
       request, [&](std::uint64_t done, std::uint64_t all) { progress(done, all); }, stop);
 }

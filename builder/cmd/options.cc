@@ -73,6 +73,20 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
       verb.add_option("DATASET", to.target, "recipe, or the folder an earlier build wrote")
           ->required();
       return;
+    case Option::import_from:
+      verb.add_option("DIR", to.import_from,
+                      "folder of models, in whatever folders and with whatever class files (.cla); "
+                      "or psb, and then the folder of the Princeton Shape Benchmark as published")
+          ->required();
+      verb.add_option("PSB_DIR", to.import_psb, "behind psb");
+      return;
+    case Option::import_folder:
+      verb.add_option("-o,--output", to.import_folder, "the recipe's folder [DIR's name-dataset]")
+          ->type_name("DIR");
+      return;
+    case Option::copy_models:
+      verb.add_flag("--copy", to.copy, "copy the models beside the recipe, with their licences");
+      return;
     case Option::optional_target_and_image:
       verb.add_option("DATASET", to.target,
                       "recipe or folder; may be left out where IMAGE is a file of a dataset")

@@ -19,23 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view k_models_dir = "{models.dir}";
 
-/// "coarse1" of "coarse1Train" and of "coarse1_test"; "" of "train".
-std::string less_split(std::string stem) {
-  for (const std::string_view split : {"Train", "Test", "train", "test"}) {
-    if (!stem.ends_with(split)) continue;
-    stem.resize(stem.size() - split.size());
-    while (!stem.empty() && std::string_view("-_. ").find(stem.back()) != std::string_view::npos)
-      stem.pop_back();
-    break;
-  }
-  return stem;
-}
-
-std::string hierarchy_name(const fs::path& file) {
-  std::string name = less_split(file.stem().string());
-  return name.empty() ? file.parent_path().filename().string() : name;
-}
-
 std::string_view trimmed(std::string_view line) {
   constexpr std::string_view k_blank = " \t";
   const std::size_t begin = line.find_first_not_of(k_blank);
@@ -44,6 +27,24 @@ std::string_view trimmed(std::string_view line) {
 }
 
 }  // namespace
+
+std::string_view split_of_class_file(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  for (const auto& [ending, split] : {std::pair("rain", "train"), std::pair("est", "test")})
+    if (stem.ends_with(std::string("T") + ending) || stem.ends_with(std::string("t") + ending))
+      return split;
+  return "";
+}
+
+std::string hierarchy_name(const fs::path& file) {
+  std::string name = file.stem().string();
+  if (const std::string_view split = split_of_class_file(file); !split.empty()) {
+    name.resize(name.size() - split.size());
+    while (!name.empty() && std::string_view("-_. ").find(name.back()) != std::string_view::npos)
+      name.pop_back();
+  }
+  return name.empty() ? fs::absolute(file).parent_path().filename().string() : name;
+}
 
 bool is_of_absent_folder(const Settings& settings, const RecipeValue& path) {
   return path.text()->find(k_models_dir) != std::string::npos &&

@@ -25,9 +25,13 @@ std::vector<LabelledModel> read_class_list(const std::filesystem::path& file);
 /// Adds a parser's findings, which carry their own places, to the recipe's.
 void add_findings(const Error& error, Diagnostics& diagnostics);
 
-/// classes.more: by name, which is the file's less its ending and "Train" or "Test" behind it, or
-/// then the folder's: coarse1Train.cla and coarse1/test.cla are of "coarse1". Every problem is a
-/// finding.
+/// What the classification of a class file is called: its name less ending and "Train" or "Test" behind
+/// it, or then its folder's.
+std::string hierarchy_name(const std::filesystem::path& file);
+/// "train" or "test" as its name ends, or "".
+std::string_view split_of_class_file(const std::filesystem::path& file);
+/// classes.more: by hierarchy_name; coarse1Train.cla and coarse1/test.cla are of "coarse1". Every
+/// problem is a finding.
 void read_hierarchies(const Settings& settings, Recipe& recipe);
 /// classes.ids: class paths, one a line; empty lines and those that begin with # are not read. Every
 /// problem is a finding.

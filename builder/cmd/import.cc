@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/import/import.h"
+
+#include "builder/cmd/plan_text.h"
+#include "builder/cmd/stop_signal.h"
+#include "builder/cmd/verbs.h"
+#include "builder/cmd/work_progress.h"
+#include "tracer/base/error.h"
+#include "tracer/base/streams.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Named in full; what follows is counted.
+constexpr std::size_t k_shown = 5;
+
+/// DIR, or psb DIR: the benchmark needs no other reading than any folder with class files.
+fs::path source_of(const Arguments& arguments) {
+  if (arguments.import_psb.empty()) return arguments.import_from;
+  if (arguments.import_from == "psb") return arguments.import_psb;
+  fail(ErrorKind::usage, "import: wanted DIR or psb DIR, got {} {}", arguments.import_from,
+       arguments.import_psb);
+}
+
+fs::path folder_of(const Arguments& arguments, const fs::path& source) {
+  if (!arguments.import_folder.empty()) return arguments.import_folder;
+  const fs::path whole = fs::absolute(source).lexically_normal();
+  return (whole.filename().empty() ? whole.parent_path() : whole).filename().string() + "-dataset";
+}
+
+void print_some(const char* what, const std::vector<std::string>& names) {
+  if (names.empty()) return;
+  const auto shown = names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), k_shown));
+  say(Stream::result, "{} {}: {}{}\n", names.size(), what, fmt::join(names.begin(), shown, ", "),
+      names.size() > k_shown ? fmt::format(" and {} more", names.size() - k_shown) : "");
+}
+
+void print_broken(const ImportResult& result) {
+  for (std::size_t i = 0; i < std::min(result.broken.size(), k_shown); ++i)
+    say(Stream::result, "left out {}: {}\n", result.broken[i].first, result.broken[i].second);
+  if (result.broken.size() > k_shown)
+    say(Stream::result, "left out {} more that cannot be used (--json names all)\n",
+        result.broken.size() - k_shown);
+}
+
+nlohmann::json to_json(const ImportResult& result) {
+  nlohmann::json broken = nlohmann::json::array();
+  for (const auto& [model, why] : result.broken)
+    broken.push_back({{"model", model}, {"error", why}});
+  return {{"recipe", result.recipe.string()},
+          {"models", result.models},
+          {"splits", result.splits},
+          {"classes", result.classes},
+          {"hierarchies", result.hierarchies},
+          {"broken", broken},
+          {"mended", result.mended},
+          {"missing", result.missing},
+          {"unclassified", result.unclassified}};
+}
+
+}  // namespace
+
+int run_import(const Arguments& arguments) {
+  const fs::path source = source_of(arguments);
+  const ImportRequest request{source, folder_of(arguments, source), arguments.copy};
+  const std::atomic<bool>& stop = stop_on_signal();
+  ImportResult result;
+  {
+    WorkProgress progress("models read");
+    result = import_models(
+        request, [&](std::uint64_t done, std::uint64_t all) { progress(done, all); }, stop);
+  }
+  if (arguments.json) {
+    print_json(to_json(result));
+    return 0;
+  }
+  print_broken(result);
+  print_some("mended (dsbuild models tells what)", result.mended);
+  print_some("in class files, without a file here", result.missing);
+  print_some("without a class", result.unclassified);
+  std::string splits;
+  for (const auto& [split, count] : result.splits)
+    if (!split.empty()) splits += fmt::format(", {} {}", count, split);
+  say(Stream::report, "{}: {} models of {} classes{}\n", result.recipe.string(), result.models,
+      result.classes.size(), splits);
+  return 0;
+}
+
+}  // namespace ds

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ds {
+
+struct ImportRequest {
+  std::filesystem::path from;  ///< a folder of models, in whatever folders
+  std::filesystem::path to;    ///< becomes the folder of the recipe
+  bool copy = false;           ///< the models, into `to`; else the recipe names where they lie
+};
+
+struct ImportResult {
+  std::filesystem::path recipe;
+  std::uint64_t models = 0;
+  std::map<std::string, std::uint64_t> splits;  ///< models of each; "" is none
+  std::vector<std::string> classes;             ///< by id
+  std::vector<std::string> hierarchies;         ///< further classifications
+  /// Files that cannot be used, and why: left out.
+  std::vector<std::pair<std::string, std::string>> broken;
+  std::vector<std::string> mended;        ///< models with damage that was mended
+  std::vector<std::string> missing;       ///< in class files, and no file here
+  std::vector<std::string> unclassified;  ///< models without a class
+};
+
+/// Writes a recipe for a folder of models, and what it needs: classes.csv, ids.txt, more/*.csv of
+/// further classifications, and the shipped materials and environments. Every model is read. Where
+/// `from` holds class files (.cla), as the Princeton Shape Benchmark does, classes and splits are theirs
+/// (of several classifications "base" comes first, or else that of most classes, and the others are
+/// further ones); else a model's class are the folders it lies in. The recipe is written last; an import
+/// that was cut short is done again. Throws Error(usage) where `from` holds no model or `to` is taken,
+/// Error(asset) where no model can be used, Error(cancelled) once `stop`. `progress`: models read of all.
+ImportResult import_models(const ImportRequest& request,
+                           const std::function<void(std::uint64_t, std::uint64_t)>& progress,
+                           const std::atomic<bool>& stop);
+
+/// The folder of the materials and environments that come with this program: beside it, in
+/// ../share/dsbuild, or where it was built. Throws Error(io) where there is none.
+std::filesystem::path shipped_assets();
+
+}  // namespace ds

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: Apache-2.0
+"""dsbuild import: folders of models and the Princeton benchmark's layout become recipes that plan and build."""
+import csv
+import json
+import shutil
+
+from harness import TinyCase, main
+
+SMALL = ["--set", "camera.views=[0]", "--set", "engine.width=16", "--set", "engine.height=16", "--set",
+         "engine.error=false", "--set", "engine.spp=1"]
+
+
+def cla(*classes):
+    """A .cla file of (name, parent, models)."""
+    lines = ["PSB 1", f"{len(classes)} {sum(len(models) for _, _, models in classes)}"]
+    for name, parent, models in classes:
+        lines += [f"{name} {parent} {len(models)}", *models]
+    return "\n".join(lines) + "\n"
+
+
+class ImportTest(TinyCase):
+    def setUp(self):
+        super().setUp()
+        self.box = (self.tiny / "models/box.off").read_text()
+        self.tetra = (self.tiny / "models/tetra.ply").read_text()
+        self.models = self.folder / "shapes"
+        self.to = self.folder / "project"
+
+    def put(self, files):
+        for path, text in files.items():
+            file = self.models / path
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text)
+
+    def take_in(self, *arguments, code=0):
+        run = self.run_it("import", *arguments, "-o", self.to, "--json")
+        self.assertEqual(run.code, code, run)
+        return run.json
+
+    def rows(self, file="classes.csv"):
+        return list(csv.reader((self.to / file).read_text().splitlines()))
+
+    def built(self):
+        run = self.run_it("build", self.to / "recipe.toml", "-o", self.out, "--json", *SMALL)
+        self.assertEqual(run.code, 0, run)
+        return {(r["model"], r["class_path"], r["split"], r["class_id"]) for r in
+                map(json.loads, (self.out / "manifest/images.jsonl").read_text().splitlines())}
+
+    def test_folders_are_classes(self):
+        self.put({"car/suv/a.off": self.box, "car/b.off": self.box, "chair/c.ply": self.tetra, "loose.off": self.box,
+                  "chair/bad.off": "OFF\n3 1 0\n0 0 0\n", "chair/notes.txt": "-"})
+        told = self.take_in(self.models)
+        self.assertEqual((told["models"], told["classes"]), (4, ["car", "car/suv", "chair"]))
+        self.assertEqual([entry["model"] for entry in told["broken"]], ["chair/bad.off"])
+        self.assertIn("bad.off", told["broken"][0]["error"])
+        self.assertEqual(told["unclassified"], ["loose.off"])
+        self.assertEqual(self.rows(), [["name", "class", "split"], ["b.off", "car", ""], ["a.off", "car/suv", ""],
+                                       ["c.ply", "chair", ""], ["loose.off", "", ""]])
+        self.assertEqual((self.to / "ids.txt").read_text(), "car\ncar/suv\nchair\n")
+        self.assertEqual({(m, c, i) for m, c, _, i in self.built()},
+                         {("b.off", "car", 0), ("a.off", "car/suv", 1), ("c.ply", "chair", 2), ("loose.off", "", None)})
+
+    def test_names_that_repeat_are_paths(self):
+        self.put({"mug/1/model.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n",
+                  "mug/2/model.obj": "v 0 0 0\nv 2 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"})
+        self.take_in(self.models, "--copy")
+        self.assertIn('names = "path"', (self.to / "recipe.toml").read_text())
+        shutil.rmtree(self.models)  # the copy stands alone
+        moved = self.folder / "elsewhere"
+        self.to.rename(moved)
+        self.to = moved
+        self.assertEqual({m for m, _, _, _ in self.built()}, {"mug/1/model.obj", "mug/2/model.obj"})
+
+    def test_folders_train_and_test_are_splits(self):
+        self.put({"train/car/a.off": self.box, "test/car/b.off": self.box})
+        told = self.take_in(self.models)
+        self.assertEqual((told["splits"], told["classes"]), ({"test": 1, "train": 1}, ["car"]))
+        self.assertNotIn("split =", (self.to / "recipe.toml").read_text())
+        self.assertEqual({(m, s) for m, _, s, _ in self.built()}, {("a.off", "train"), ("b.off", "test")})
+
+    def test_the_benchmark_as_published(self):
+        for number in (0, 7, 101, 1298):
+            self.put({f"db/{number // 100}/m{number}/m{number}.off": self.box,
+                      f"db/{number // 100}/m{number}/m{number}_info.txt": "mesh"})
+        base = "classification/v1/base"
+        self.put({"db/3/m300/m300.off": "OFF\nbroken\n",
+                  f"{base}/baseTrain.cla": cla(("vehicle", "0", []), ("car", "vehicle", ["7", "300"]), ("cup", "0", ["101"])),
+                  f"{base}/baseTest.cla": cla(("vehicle", "0", []), ("car", "vehicle", ["1298", "762"])),
+                  "classification/v1/coarse1/coarse1Train.cla": cla(("moves", "0", ["7", "300"]), ("stands", "0", ["101"])),
+                  "classification/v1/coarse1/coarse1Test.cla": cla(("moves", "0", ["1298", "762"]))})
+        told = self.take_in("psb", self.models)
+        self.assertEqual((told["models"], told["classes"], told["hierarchies"]), (4, ["cup", "vehicle/car"], ["coarse1"]))
+        self.assertEqual(told["splits"], {"": 1, "test": 1, "train": 2})
+        self.assertEqual(told["missing"], ["762"])
+        self.assertEqual([entry["model"] for entry in told["broken"]], ["db/3/m300/m300.off"])
+        self.assertEqual(self.rows("more/coarse1.csv")[1:], [["m7.off", "moves"], ["m101.off", "stands"], ["m1298.off", "moves"]])
+        self.assertEqual(self.built(), {("m7.off", "vehicle/car", "train", 1), ("m101.off", "cup", "train", 0),
+                                        ("m1298.off", "vehicle/car", "test", 1), ("m0.off", "", "", None)})
+
+    def test_names_with_commas_and_quotes(self):
+        self.put({'a, "b"/x,y.off': self.box})
+        self.take_in(self.models)
+        self.assertEqual(self.rows()[1], ["x,y.off", 'a, "b"', ""])
+        self.assertEqual({(m, c) for m, c, _, _ in self.built()}, {("x,y.off", 'a, "b"')})
+
+    def test_what_is_in_the_way_stays(self):
+        self.put({"car/a.off": self.box})
+        self.to.mkdir()
+        (self.to / "recipe.toml").write_text("mine")
+        run = self.run_it("import", self.models, "-o", self.to)
+        self.assertEqual(run.code, 2)
+        self.assertIn("holds a recipe.toml already", run.err)
+        self.assertEqual((self.to / "recipe.toml").read_text(), "mine")
+        (self.to / "recipe.toml").unlink()
+        # An import that was cut short is done again.
+        (self.to / ".dsbuild-import").write_text("")
+        (self.to / "classes.csv").write_text("na")
+        self.take_in(self.models)
+        self.assertEqual(sorted(path.name for path in self.to.iterdir()),
+                         ["classes.csv", "environments", "ids.txt", "materials", "recipe.toml"])
+
+    def test_nothing_to_import(self):
+        self.models.mkdir()
+        for arguments, why in (([self.folder / "none"], "wanted a folder of models, found none"),
+                               ([self.models], "found none in"), (["bop", self.models], "wanted DIR or psb DIR")):
+            run = self.run_it("import", *arguments, "-o", self.to)
+            self.assertEqual(run.code, 2, run)
+            self.assertIn(why, run.err)
+        self.put({"a.off": "OFF\n"})
+        run = self.run_it("import", self.models, "-o", self.to)
+        self.assertEqual(run.code, 1, run)
+        self.assertIn("none of 1 models can be used", run.err)
+        self.assertFalse(self.to.exists())
+
+
+if __name__ == "__main__":
+    main()
