@@ -10,8 +10,11 @@
 #include "tracer/base/error.h"
 #include "tracer/base/log.h"
 #include "tracer/base/streams.h"
+#include "tracer/scene/mesh.h"
 
 #include <filesystem>
+#include <functional>
+#include <map>
 
 namespace ds {
 namespace {
@@ -47,6 +50,29 @@ std::vector<std::pair<std::string, std::string>> filters_of(const Arguments& arg
   return filters;
 }
 
+/// Reads models where the recipe names them; nothing where it cannot be read.
+std::function<FileMesh(const ImageRecord&)> mesh_reader(const Arguments& arguments) {
+  std::map<std::string, std::filesystem::path> files;
+  try {
+    RealDisk disk;
+    for (ModelFile& model : open_dataset(arguments.request(), Access::look, disk).recipe.models)
+      files.emplace(model.name, std::move(model.file));
+  } catch (const Error&) {
+    return {};
+  }
+  return [files = std::move(files)](const ImageRecord& image) {
+    const auto at = files.find(image.model);
+    if (at == files.end())
+      fail(ErrorKind::asset, "{}: the recipe has no such model any more", image.model);
+    FileMesh mesh = read_model(at->second).mesh;
+    if (image.pose && bounds_of(mesh) != image.pose->model_box)
+      fail(ErrorKind::asset,
+           "{}: is no longer the model of the pictures; dsbuild build makes them anew",
+           at->second.string());
+    return mesh;
+  };
+}
+
 ExportResult run(const ExportRequest& request) {
   const std::atomic<bool>& stop = stop_on_signal();
   WorkProgress progress("images exported");
@@ -58,14 +84,9 @@ ExportResult run(const ExportRequest& request) {
 
 int run_export(const Arguments& arguments) {
   const std::filesystem::path folder = dataset_folder(arguments.request());
-  ExportRequest request{folder,
-                        arguments.export_folder,
-                        arguments.format,
-                        arguments.splits,
-                        filters_of(arguments),
-                        arguments.hierarchy,
-                        arguments.copy,
-                        {}};
+  ExportRequest request{folder,           arguments.export_folder, arguments.format,
+                        arguments.splits, filters_of(arguments),   arguments.hierarchy,
+                        arguments.copy,   mesh_reader(arguments),  {}};
   if (const std::string why = behind(arguments); !why.empty()) request.notes.push_back(why);
   const ExportResult result = run(request);
   for (const std::string& note : result.notes)

@@ -197,6 +197,7 @@ void Export::look() {
          request_.folder.string(), k_images);
   check_manifest(request_.folder);
   input_.folder = request_.folder;
+  input_.mesh = request_.mesh;
   input_.dataset = read_dataset_manifest(request_.folder);
   choose_classes();
   visit([&](const ImageRecord& image) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "manifests/manifest.h"
+
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
@@ -23,6 +25,9 @@ struct ExportRequest {
   std::vector<std::pair<std::string, std::string>> filters;
   std::string classes{};  ///< of DatasetRecord::hierarchies, in place of class_path; "": class_path
   bool copy = false;
+  /// An image's model as its file has it, for formats that hold models; empty where only the dataset's
+  /// folder is known.
+  std::function<FileMesh(const ImageRecord&)> mesh{};
   /// What readers must know of the dataset, as that its recipe wants more: a warning, and in the card.
   std::vector<std::string> notes{};
 };

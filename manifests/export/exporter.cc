@@ -41,8 +41,8 @@ std::string ending_of(const FileRecord& file) {
   return std::filesystem::path(file.path).extension().string();
 }
 
-MaskPixels read_mask(const ExportInput& input, const ExportImage& image) {
-  const FileRecord& file = file_of(image, "mask");
+MaskPixels read_mask(const ExportInput& input, const ExportImage& image, std::string_view kind) {
+  const FileRecord& file = file_of(image, kind);
   const std::string bytes = read_checked(input.folder, file);
   const DecodedImage decoded =
       decode_image_bytes(bytes_of(bytes), (input.folder / file.path).string(), Halves::keep);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -48,6 +49,7 @@ struct ExportInput {
   std::vector<std::string> unlicensed;  ///< models, materials, environments without a licence
   std::vector<std::string> filters;     ///< "class=vehicle/*", "split=test": what was asked for
   std::string size;                     ///< "256 x 256", or "of several sizes"
+  std::function<FileMesh(const ImageRecord&)> mesh;  ///< as in ExportRequest
 
   bool has(const std::string& kind) const;
 };
@@ -86,6 +88,7 @@ const FileRecord& file_of(const ExportImage& image, std::string_view kind);
 /// ".png" of "images/mug.ply/0.mask.png".
 std::string ending_of(const FileRecord& file);
 /// The mask as it lies in the dataset; Error(asset) where its bytes are not those of the manifest.
-MaskPixels read_mask(const ExportInput& input, const ExportImage& image);
+MaskPixels read_mask(const ExportInput& input, const ExportImage& image,
+                     std::string_view kind = "mask");
 
 }  // namespace ds
