@@ -78,7 +78,8 @@ json to_json_value(const ImageRecord& image) {
             {"width", image.width},
             {"height", image.height},
             {"math", image.math},
-            {"intrinsics", matrix(image.intrinsics, 3)},
+            {"camera_model", image.camera_model},
+            {"intrinsics", image.intrinsics ? matrix(*image.intrinsics, 3) : json()},
             {"camera_to_world", matrix(image.camera_to_world, 4)},
             {"camera_convention", "opencv"},
             {"lens_radius_m", image.lens_radius_m},
@@ -96,6 +97,7 @@ json to_json_value(const ImageRecord& image) {
               {"environment", parts[2].hex()},
               {"camera", parts[3].hex()},
               {"engine", parts[4].hex()}}}};
+  if (image.metres_per_pixel) line["metres_per_pixel"] = *image.metres_per_pixel;
   if (!image.other_classes.empty()) line["classes"] = image.other_classes;
   add_counted(line, image);
   add_pose(line, image);
@@ -134,7 +136,10 @@ json to_json_value(const DatasetRecord& dataset) {
         {"camera_to_world",
          "4x4, row-major, column vectors; opencv camera: x right, y down, z forward"},
         {"intrinsics",
-         "3x3, row-major, pixels; origin at the top left corner, pixel centres at .5"},
+         "3x3, row-major, pixels; origin at the top left corner, pixel centres at .5; null "
+         "where rays are parallel: they start in the plane the camera stands in and run "
+         "along z, and the picture, metres_per_pixel * (width, height) large, has the "
+         "camera in its middle"},
         {"model_to_world",
          "4x4, row-major, column vectors; the model file's coordinates to the world, with "
          "the scale; model_to_camera likewise, to a camera of opencv axes or opengl's (x "

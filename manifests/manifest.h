@@ -65,7 +65,11 @@ struct ImageRecord {
   std::uint64_t seed = 0;  ///< below 2^53, so that every JSON reader gets it exactly
   int spp = 0, width = 0, height = 0;
   std::string math;                          ///< "strict" or "fast"
-  std::array<double, 9> intrinsics{};        ///< as camera_intrinsics gives it
+  std::string camera_model = "perspective";  ///< a name of camera_types()
+  /// As camera_intrinsics gives it; null for a camera whose rays are parallel.
+  std::optional<std::array<double, 9>> intrinsics{};
+  /// Of such a camera; a field only there. The picture's middle lies on the viewing axis.
+  std::optional<double> metres_per_pixel{};
   std::array<double, 16> camera_to_world{};  ///< as camera_pose gives it
   double lens_radius_m = 0, focus_distance_m = 0;
   /// Absent in lines of an older dsbuild. The line has "model_to_world", "model_box" ([least, most]), and

@@ -229,7 +229,11 @@ ImageRecord image_from(const std::string& line, const SourcePlace& place,
   fields.count("width", image.width);
   fields.count("height", image.height);
   fields.text("math", image.math);
-  fields.matrix("intrinsics", 3, image.intrinsics);
+  if (object->contains("camera_model")) fields.text("camera_model", image.camera_model);
+  if (!object->contains("metres_per_pixel"))
+    fields.matrix("intrinsics", 3, image.intrinsics.emplace());
+  else
+    fields.number("metres_per_pixel", image.metres_per_pixel.emplace());
   fields.matrix("camera_to_world", 4, image.camera_to_world);
   fields.number("lens_radius_m", image.lens_radius_m);
   fields.number("focus_distance_m", image.focus_distance_m);

@@ -80,7 +80,12 @@ ImageRecord image_record(const PlannedImage& image, const Recipe& recipe, const 
   record.width = spec.engine.width;
   record.height = spec.engine.height;
   record.math = spec.engine.math == MathMode::strict ? "strict" : "fast";
-  record.intrinsics = camera_intrinsics(spec.camera.fov_deg, record.width, record.height);
+  const CameraType& camera = type_of(spec.camera);
+  record.camera_model = camera.name;
+  if (camera.host.span == kernels::CameraSpan::fov_deg)
+    record.intrinsics = camera_intrinsics(spec.camera.fov_deg, record.width, record.height);
+  else
+    record.metres_per_pixel = spec.camera.extent_m / std::max(record.width, record.height);
   record.camera_to_world = camera_pose(spec.camera);
   record.lens_radius_m = spec.camera.lens_radius_m;
   record.focus_distance_m = spec.camera.focus_distance_m;

@@ -13,6 +13,7 @@
 #include "tracer/render/engine_text.h"
 #include "tracer/scene/scene_reads.h"
 #include "tracer/scene/sdl.h"
+#include "tracer/scene/type_tables.h"
 
 #include <fmt/format.h>
 
@@ -92,8 +93,9 @@ TextForm form_of_parts(CanonicalText head) {
 
 // Every member, and so no fewer: a struct with one more does not compile.
 auto members(const Camera& camera) {
-  const auto& [position, target, up, fov_deg, lens_radius_m, focus_distance_m] = camera;
-  return std::tie(position, target, up, fov_deg, lens_radius_m, focus_distance_m);
+  const auto& [type, position, target, up, fov_deg, extent_m, lens_radius_m, focus_distance_m] =
+      camera;
+  return std::tie(type, position, target, up, fov_deg, extent_m, lens_radius_m, focus_distance_m);
 }
 auto members(const ToneMap& map) {
   const auto& [kind, scale, prescale, postscale, burn, gamma] = map;

@@ -6,6 +6,7 @@
 #include "tracer/device/program_text.h"
 #include "tracer/device/program_tokens.h"
 #include "tracer/kernels/layout.h"
+#include "tracer/scene/type_tables.h"
 
 #include <fmt/format.h>
 
@@ -66,7 +67,9 @@ TextForm plane_form(const WantedPlane& plane, const std::map<unsigned, std::stri
   add_vector(text, "camera.position", image.camera.position);
   add_vector(text, "camera.target", image.camera.target);
   add_vector(text, "camera.up", image.camera.up);
-  text.add("camera.fov_deg", image.camera.fov_deg);
+  const CameraType& type = type_of(image.camera);
+  if (image.camera.type != 0) text.add("camera.type", type.name);
+  text.add(fmt::format("camera.{}", type.span_name()), span_of(image.camera));
   text.add("width", image.engine.width);
   text.add("height", image.engine.height);
   return {text.text(), parts};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/unlikely_sizes.h"
 
-#include "manifests/camera_geometry.h"
+#include "tracer/scene/type_tables.h"
 
 #include <fmt/format.h>
 
@@ -34,12 +34,8 @@ Axes axes_of(const Camera& camera) {
   return {right, cross(right, forward), forward};
 }
 
-/// Half the picture's width and height at a distance of 1.
-std::array<double, 2> half_picture(const ImageLengths& image) {
-  const double half = image.camera.fov_deg / 2;
-  const double longer = std::max(image.width, image.height);
-  const double tangent = sin_deg(half) / cos_deg(half) / longer;
-  return {tangent * image.width, tangent * image.height};
+ShownSides shown_by(const ImageLengths& image) {
+  return shown_by(image.camera, image.width, image.height);
 }
 
 bool is_camera_inside(const ImageLengths& image) {
@@ -52,7 +48,7 @@ bool is_camera_inside(const ImageLengths& image) {
 /// Whether all corners of the box are outside of one side of what the camera sees, or behind it.
 bool is_out_of_view(const ImageLengths& image) {
   const Axes axes = axes_of(image.camera);
-  const auto [half_width, half_height] = half_picture(image);
+  const ShownSides sides = shown_by(image);
   std::array<bool, 5> outside{true, true, true, true, true};
   for (int corner = 0; corner < 8; ++corner) {
     const auto pick = [&](int bit, double least, double most) {
@@ -65,8 +61,10 @@ bool is_out_of_view(const ImageLengths& image) {
     // A lens sees a little around its middle.
     const double lens = image.camera.lens_radius_m * 2;
     const double x = dot(at, axes.right), y = dot(at, axes.up), z = dot(at, axes.forward);
-    const std::array<double, 5> beyond{x - z * half_width, -x - z * half_width, y - z * half_height,
-                                       -y - z * half_height, -z};
+    const double half_width = sides.x_m + z * sides.x_per_metre;
+    const double half_height = sides.y_m + z * sides.y_per_metre;
+    const std::array<double, 5> beyond{x - half_width, -x - half_width, y - half_height,
+                                       -y - half_height, -z};
     for (std::size_t plane = 0; plane < beyond.size(); ++plane)
       outside[plane] = outside[plane] && beyond[plane] > lens;
   }
@@ -79,14 +77,17 @@ double distance_to(const ImageLengths& image) {
 
 /// How much of a length the picture shows at the model's distance.
 double shown_m(const ImageLengths& image) {
-  const auto [half_width, half_height] = half_picture(image);
-  return distance_to(image) * 2 * std::max(half_width, half_height);
+  const ShownSides sides = shown_by(image);
+  const double away_m = distance_to(image);
+  return 2 *
+         std::max(sides.x_m + away_m * sides.x_per_metre, sides.y_m + away_m * sides.y_per_metre);
 }
 
 /// Angles of view in radians are below pi. One so narrow is for what is far.
 bool is_narrow(const ImageLengths& image) {
   constexpr double k_parts = 4;
-  return image.camera.fov_deg < std::numbers::pi &&
+  return type_of(image.camera).host.span == kernels::CameraSpan::fov_deg &&
+         image.camera.fov_deg < std::numbers::pi &&
          longest(side_of(image.model)) > k_parts * shown_m(image);
 }
 

@@ -3,6 +3,7 @@
 
 #include "manifests/camera_geometry.h"
 #include "tracer/base/error.h"
+#include "tracer/scene/type_tables.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,12 +57,21 @@ Camera fit_camera(Camera camera, const CameraFit& fit, const Sphere& sphere, int
   const Vec3d right = normalized(cross(sight, camera.up));
   const Vec3d up = cross(right, sight);
   const double longer = std::max(width, height);
-  const double tangent =
-      sin_deg(camera.fov_deg / 2) / cos_deg(camera.fov_deg / 2) * (1 - fit.margin) / longer;
   const Vec3d offset = sphere.centre - camera.target;
-  const double distance_m =
-      std::max(distance_for(tangent * width, sight, right, offset, sphere.radius_m),
-               distance_for(tangent * height, sight, up, offset, sphere.radius_m));
+  double distance_m = 0;
+  if (type_of(camera).host.span == kernels::CameraSpan::fov_deg) {
+    const double tangent =
+        sin_deg(camera.fov_deg / 2) / cos_deg(camera.fov_deg / 2) * (1 - fit.margin) / longer;
+    distance_m = std::max(distance_for(tangent * width, sight, right, offset, sphere.radius_m),
+                          distance_for(tangent * height, sight, up, offset, sphere.radius_m));
+  } else {
+    const auto extent_for = [&](Vec3d side, int pixels) {
+      return (std::fabs(dot(offset, side)) + sphere.radius_m) * longer / pixels;
+    };
+    camera.extent_m =
+        2 * std::max(extent_for(right, width), extent_for(up, height)) / (1 - fit.margin);
+    distance_m = std::max(2 * sphere.radius_m - dot(offset, sight), sphere.radius_m);
+  }
   camera.position = camera.target - sight * distance_m;
   if (fit.focus == CameraFit::Focus::distance) return camera;
   const Vec3d sharp = fit.focus == CameraFit::Focus::target ? camera.target : Vec3d{};

@@ -27,10 +27,11 @@ struct CameraFit {
   Focus focus = Focus::origin;
 };
 
-/// Moves a camera along its line of sight to where the sphere is just inside the picture less its
-/// margin, on all four sides, and focuses it. The direction, not the distance, of `camera.position`
-/// from its target counts. With half angles a of the picture less its margin, sight f and side
-/// direction s, a side's plane holds the camera and has the inward normal n = f sin a + s cos a; at
+/// Gives a camera whose rays are parallel the extent that just shows the sphere inside the picture less
+/// its margin, and puts it a diameter before the sphere's middle. Moves another along its line of sight
+/// to where the sphere is just inside, on all four sides. Focuses either. The direction, not the
+/// distance, of `camera.position` from its target counts. With half angles a of the picture less its
+/// margin, sight f and side direction s, a side's plane holds the camera and has the inward normal n = f sin a + s cos a; at
 /// distance d from the target t the sphere (c, r) is inside where (c - t) n + d sin a >= r.
 /// Throws Error(recipe) where what is to be in focus is behind the camera then.
 Camera fit_camera(Camera camera, const CameraFit& fit, const Sphere& sphere, int width, int height);

@@ -3,6 +3,7 @@
 
 #include "manifests/camera_geometry.h"
 #include "tracer/base/log.h"
+#include "tracer/scene/type_tables.h"
 
 #include <cmath>
 #include <set>
@@ -53,6 +54,9 @@ std::optional<CameraFit> fit_of(const Settings& settings) {
   // The table's vectors have lengths of their own: there is no one distance to choose.
   if (settings.text("camera.set") == "half-dodecahedron" && !settings.boolean("camera.normalise"))
     settings.complain("camera.normalise", "must be true with camera.distance_m = \"fit\"");
+  if (settings.given("camera.extent_m") && !settings.misfits("camera.type"))
+    settings.complain("camera.extent_m",
+                      "must not be given with camera.distance_m = \"fit\", which chooses it");
   CameraFit fit;
   fit.margin = settings.number("camera.fit_margin");
   const std::string& focus = settings.text("camera.focus");
@@ -193,7 +197,8 @@ CameraViews make_cameras(const Settings& settings) {
     Camera camera;
     camera.position = positions[i];
     camera.target = target;
-    camera.fov_deg = settings.number("camera.fov_deg");
+    camera.type = find_camera_type(settings.text("camera.type"));
+    span_of(camera) = settings.number(fmt::format("camera.{}", type_of(camera).span_name()));
     camera.lens_radius_m = settings.number("camera.lens_radius_m");
     views.names.push_back(std::to_string(i));
     views.cameras.push_back(camera);

@@ -2,12 +2,14 @@
 #include "builder/recipe/keys.h"
 
 #include "tracer/base/nearest.h"
+#include "tracer/scene/type_tables.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <vector>
 
 namespace ds {
@@ -33,7 +35,8 @@ constexpr std::string_view k_reinhard = R"(outputs.tone_map = "reinhard02")";
 using enum KeyType;
 using enum Moves;
 
-constexpr std::array k_keys = {
+/// But what cameras add.
+constexpr std::array k_own_keys = {
     KeySpec{"dataset.name", manifest, name, "", "(the recipe's file name less .toml)", k_any, "",
             "", "Names the dataset and its folder under out/"},
     KeySpec{"dataset.seed", images, integer, "", "0", at_least(0), "", "",
@@ -163,15 +166,7 @@ constexpr std::array k_keys = {
             "The point every camera looks at"},
     KeySpec{"camera.views", images, integer_list, "", "[]", k_any, "", "",
             "Use only these views of the set, by number from 0; the names stay. []: all"},
-    KeySpec{"camera.fov_deg",
-            scene,
-            number,
-            "degree",
-            "49",
-            {0, 180, true, true},
-            "",
-            "",
-            "Full angle of view over the longer side of the picture"},
+    KeySpec{"camera.type", scene, choice, "", "", k_any, "", "", ""},  // and a span: camera_keys
     KeySpec{"camera.lens_radius_m", film, number, "m", "0", between(0, k_far_m), "", "",
             "Radius of the thin lens; 0 is a pinhole, sharp everywhere"},
     KeySpec{"camera.focus", film, choice, "", "\"origin\"", k_any,
@@ -269,6 +264,66 @@ constexpr std::array k_keys = {
             "12 bytes a pixel before compression"},
 };
 
+/// camera.type, and the keys in which its types' spans are given.
+struct CameraKeys {
+  std::string types, default_type, help;
+  struct Span {
+    const CameraType* first = nullptr;
+    std::string name, only_with;
+  };
+  std::vector<Span> spans;
+};
+
+CameraKeys make_camera_keys() {
+  CameraKeys keys;
+  for (const CameraType& type : camera_types()) {
+    const std::string literal = fmt::format("\"{}\"", type.name);
+    const auto add = [&](std::string& list) { list += (list.empty() ? "" : " | ") + literal; };
+    add(keys.types);
+    // A sentence that ends as helps do, without a full stop.
+    if (!keys.help.empty()) keys.help += ". ";
+    std::string comment = header_comment("cameras", type.name);
+    comment.pop_back();
+    keys.help += fmt::format("{}: {}", literal, comment);
+    const std::string name = fmt::format("camera.{}", type.span_name());
+    auto span = std::find_if(keys.spans.begin(), keys.spans.end(),
+                             [&](const CameraKeys::Span& one) { return one.name == name; });
+    if (span == keys.spans.end())
+      span = keys.spans.insert(span, {&type, name, "camera.type = " + literal});
+    else
+      span->only_with += " | " + literal;
+  }
+  keys.default_type = keys.types.substr(0, keys.types.find(" | "));
+  return keys;
+}
+
+std::vector<KeySpec> make_keys() {
+  static const CameraKeys cameras = make_camera_keys();
+  std::vector<KeySpec> keys;
+  for (KeySpec key : k_own_keys) {
+    const bool is_type = key.name == "camera.type";
+    if (is_type) {
+      key.default_value = cameras.default_type;
+      key.choices = cameras.types;
+      key.help = cameras.help;
+    }
+    keys.push_back(key);
+    if (!is_type) continue;
+    for (const CameraKeys::Span& span : cameras.spans) {
+      const kernels::CameraOnHost& host = span.first->host;
+      keys.push_back({span.name, scene, number,
+                      host.span == kernels::CameraSpan::fov_deg ? "degree" : "m",
+                      host.default_value, host.range, "", span.only_with, host.help});
+    }
+  }
+  return keys;
+}
+
+const std::vector<KeySpec>& all_keys() {
+  static const std::vector<KeySpec> keys = make_keys();
+  return keys;
+}
+
 std::string_view last_part(std::string_view name) {
   return name.substr(name.rfind('.') + 1);
 }
@@ -278,7 +333,7 @@ std::string_view last_part(std::string_view name) {
 std::string_view key_of_other_section(std::string_view unknown) {
   std::string_view found;
   std::size_t least = std::string_view::npos;
-  for (const KeySpec& key : k_keys) {
+  for (const KeySpec& key : all_keys()) {
     if (last_part(key.name) != last_part(unknown)) continue;
     const std::size_t distance = edit_distance(unknown, key.name);
     if (distance < least) {
@@ -299,13 +354,14 @@ KeyCondition condition_of(const KeySpec& key) {
 }
 
 std::span<const KeySpec> recipe_keys() {
-  return k_keys;
+  return all_keys();
 }
 
 const KeySpec* find_key(std::string_view name) {
-  const auto at = std::find_if(k_keys.begin(), k_keys.end(),
-                               [&](const KeySpec& key) { return key.name == name; });
-  return at == k_keys.end() ? nullptr : &*at;
+  const std::vector<KeySpec>& keys = all_keys();
+  const auto at =
+      std::find_if(keys.begin(), keys.end(), [&](const KeySpec& key) { return key.name == name; });
+  return at == keys.end() ? nullptr : &*at;
 }
 
 bool is_choice(std::string_view choices, std::string_view literal) {
@@ -319,7 +375,7 @@ bool is_choice(std::string_view choices, std::string_view literal) {
 
 std::vector<std::string_view> recipe_sections() {
   std::vector<std::string_view> sections;
-  for (const KeySpec& key : k_keys) {
+  for (const KeySpec& key : all_keys()) {
     const std::string_view own = key.name.substr(0, key.name.find('.'));
     if (sections.empty() || sections.back() != own) sections.push_back(own);
   }
@@ -330,7 +386,7 @@ std::string_view nearest_key(std::string_view unknown) {
   if (const std::string_view key = key_of_other_section(unknown); !key.empty()) return key;
   std::string_view nearest;
   std::size_t least = 3;  // two slips of the finger
-  for (const KeySpec& key : k_keys) {
+  for (const KeySpec& key : all_keys()) {
     const std::size_t distance = edit_distance(unknown, key.name);
     if (distance < least) {
       least = distance;
@@ -339,7 +395,7 @@ std::string_view nearest_key(std::string_view unknown) {
   }
   if (!nearest.empty()) return nearest;
   // Without its unit ("fov").
-  for (const KeySpec& key : k_keys) {
+  for (const KeySpec& key : all_keys()) {
     const std::string_view own = last_part(unknown), known = last_part(key.name);
     if (own.size() >= 3 && known.starts_with(own) && known[own.size()] == '_') return key.name;
   }

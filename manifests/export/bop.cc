@@ -199,7 +199,8 @@ void Bop::add_labels(Scene& scene, const ExportImage& image, const DepthPixels& 
   const std::string number = std::to_string(scene.images);
   const auto world = world_to_camera(record.camera_to_world);
   const auto to_camera = model_to_camera(world, model_.middle_m);
-  std::array<double, 9> k = record.intrinsics;
+  const std::array<double, 9>& pinhole = intrinsics_for("bop", record);
+  std::array<double, 9> k = pinhole;
   k[2] -= 0.5;
   k[5] -= 0.5;
   scene.camera.add(number, {{"cam_K", k},
@@ -219,7 +220,7 @@ void Bop::add_labels(Scene& scene, const ExportImage& image, const DepthPixels& 
                                      {"cam_t_m2c", translation_of(to_camera)}}}));
   const MaskPixels mask = read_mask(input_, image), whole = read_mask(input_, image, "amodal_mask");
   const Silhouette all =
-      silhouette(model_, to_camera, record.intrinsics, record.width, record.height);
+      silhouette(model_, to_camera, pinhole, record.width, record.height);
   if (!all.whole)
     to_.note("models of which some is behind the camera: px_count_all and bbox_obj lack that");
   // By the picture's own rays where it holds all of the model.

@@ -37,6 +37,13 @@ const FileRecord& file_of(const ExportImage& image, std::string_view kind) {
   return *at;
 }
 
+const std::array<double, 9>& intrinsics_for(const char* format, const ImageRecord& record) {
+  if (!record.intrinsics)
+    fail(ErrorKind::asset, "{}: {} has no camera of parallel rays, got one that is {}", record.id,
+         format, record.camera_model);
+  return *record.intrinsics;
+}
+
 std::string ending_of(const FileRecord& file) {
   return std::filesystem::path(file.path).extension().string();
 }

@@ -85,6 +85,8 @@ const ExporterType* find_exporter(std::string_view name);
 
 /// The image's file of that kind, which must be there.
 const FileRecord& file_of(const ExportImage& image, std::string_view kind);
+/// The image's K. Error(asset) where its camera's rays are parallel, which `format` has no place for.
+const std::array<double, 9>& intrinsics_for(const char* format, const ImageRecord& record);
 /// ".png" of "images/mug.ply/0.mask.png".
 std::string ending_of(const FileRecord& file);
 /// The mask as it lies in the dataset; Error(asset) where its bytes are not those of the manifest.

@@ -32,10 +32,10 @@ class Nerf : public Exporter {
       to_.note(
           "pictures have depth of field, which a pinhole camera model cannot explain "
           "(camera.lens_radius_m = 0 leaves it out)");
+    const std::array<double, 9>& k = intrinsics_for("nerf", record);
     const std::string stem = image.key.substr(0, image.key.rfind("-" + record.view));
     Scene& scene = scenes_[fmt::format("{}-{}-{}", stem, record.material, record.environment)];
     if (scene.frames.empty()) {
-      const auto& k = record.intrinsics;
       scene.head = {{"camera_model", "OPENCV"},
                     {"fl_x", k[0]},
                     {"fl_y", k[4]},

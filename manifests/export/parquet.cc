@@ -22,7 +22,9 @@ constexpr std::pair<const char*, ParquetType> k_fields[] = {
     {"spp", ParquetType::int64},
     {"width", ParquetType::int64},
     {"height", ParquetType::int64},
+    {"camera_model", ParquetType::text},
     {"intrinsics", ParquetType::float64_matrix},
+    {"metres_per_pixel", ParquetType::float64},
     {"camera_to_world", ParquetType::float64_matrix},
     {"relative_error", ParquetType::float64},
 };

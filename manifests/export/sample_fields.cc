@@ -30,9 +30,13 @@ nlohmann::json sample_fields(const ExportInput& input, const ExportImage& image)
                         {"spp", record.spp},
                         {"width", record.width},
                         {"height", record.height},
-                        {"intrinsics", rows_of(record.intrinsics, 3)},
+                        {"camera_model", record.camera_model},
+                        {"intrinsics", nullptr},
+                        {"metres_per_pixel", nullptr},
                         {"camera_to_world", rows_of(record.camera_to_world, 4)},
                         {"relative_error", nullptr}};
+  if (record.intrinsics) fields["intrinsics"] = rows_of(*record.intrinsics, 3);
+  if (record.metres_per_pixel) fields["metres_per_pixel"] = *record.metres_per_pixel;
   if (record.relative_error) fields["relative_error"] = *record.relative_error;
   if (!input.has("mask")) return fields;
   const auto box = tight_box(read_mask(input, image));

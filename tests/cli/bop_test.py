@@ -126,6 +126,12 @@ class BopTest(TinyCase):
         self.export("--set", 'outputs.planes=["mask", "amodal_mask", "depth:png16"]')
         self.assertEqual(self.load("camera.json")["depth_scale"], 1.0)
 
+    def test_has_no_camera_of_parallel_rays(self):
+        self.edit("recipe.toml", "fov_deg = 49", 'type = "orthographic"')
+        run = self.export(code=1)
+        self.assertIn("bop has no camera of parallel rays, got one that is orthographic", run.err)
+        self.assertFalse(self.to.exists())
+
     def test_wants_the_models_and_the_planes(self):
         self.build(*PLANES)
         (self.tiny / "recipe.toml").rename(self.tiny / "other.toml")

@@ -364,6 +364,25 @@ class ExportTest(TinyCase):
         self.assertEqual(self.export("csv")["notes"], [])
         self.assertIn("- `depth` (exr): ", (self.to / "README.md").read_text())
 
+    def test_a_camera_of_parallel_rays(self):
+        self.edit("recipe.toml", "fov_deg = 49", 'type = "orthographic"\nextent_m = 0.25')
+        self.build()
+        self.export("imagefolder", "--split", "train")
+        records = {record["id"]: record for record in self.records()}
+        lines = (self.to / "train/metadata.jsonl").read_text().splitlines()
+        self.assertEqual(len(lines), IMAGES // 2)
+        for line in map(json.loads, lines):
+            self.assertEqual((line["camera_model"], line["intrinsics"], line["metres_per_pixel"]),
+                             ("orthographic", None, 0.25 / 32))
+            self.assertEqual(line["camera_to_world"], records[line["id"]]["camera_to_world"])
+        for format in FORMATS:
+            if format != "nerf":
+                self.export(format)
+        run = self.run_it("export", self.out, "--format", "nerf", "-o", self.folder / "other")
+        self.assertNotEqual(run.code, 0, run)
+        self.assertIn("nerf has no camera of parallel rays, got one that is orthographic", run.err)
+        self.assertFalse((self.folder / "other").exists())
+
     def test_killed_at_any_moment(self):
         self.export("coco")
         before = self.contents(self.to)

@@ -107,6 +107,14 @@ class ConsumersTest(TinyCase):
                 self.assertEqual(row["bbox"], [xs.min(), ys.min(), numpy.ptp(xs) + 1, numpy.ptp(ys) + 1])
         self.assertEqual(seen, set(self.records))
 
+    def test_parquet_of_parallel_rays(self):
+        self.edit("recipe.toml", "fov_deg = 49", 'type = "orthographic"\nextent_m = 0.25')
+        self.build()
+        self.export("parquet")
+        rows = parquet.read_table(self.to / "data/train-00000.parquet").to_pylist()
+        self.assertEqual([(row["camera_model"], row["intrinsics"], row["metres_per_pixel"]) for row in rows],
+                         [("orthographic", None, 0.25 / 32)] * (IMAGES // 2))
+
     def test_webdataset(self):
         self.export("webdataset")
         seen = set()

@@ -122,6 +122,24 @@ TEST_F(ManifestTest, ReadsBackWhatWasWritten) {
   EXPECT_EQ(to_json(read_dataset_manifest(folder_)), to_json(dataset_));
 }
 
+TEST_F(ManifestTest, ACameraOfParallelRaysHasNoIntrinsics) {
+  images_[0].camera_model = "orthographic";
+  images_[0].intrinsics = std::nullopt;
+  images_[0].metres_per_pixel = 0.5 / 256;
+  const std::string line = to_json_line(images_[0]);
+  EXPECT_THAT(line, HasSubstr("\"intrinsics\":null"));
+  EXPECT_THAT(to_json_line(images_[1]), testing::Not(HasSubstr("metres_per_pixel")));
+  write_manifest(folder_, dataset_, images_);
+  for (const ImageRecord& image : read_images_manifest(folder_)) {
+    const bool parallel = image.camera_model == "orthographic";
+    EXPECT_EQ(image.intrinsics.has_value(), !parallel);
+    EXPECT_EQ(image.metres_per_pixel.has_value(), parallel);
+    if (parallel) {
+      EXPECT_EQ(to_json_line(image), line);
+    }
+  }
+}
+
 TEST_F(ManifestTest, NamesMendedModelsAndOnlyThose) {
   EXPECT_THAT(to_json(dataset_), testing::Not(HasSubstr("mended_models")));
   EXPECT_TRUE(dataset_from_json(to_json(dataset_), "d").mended_models.empty());
@@ -189,7 +207,7 @@ TEST_F(ManifestTest, LinesAreCanonical) {
   EXPECT_EQ(line.find(' '), line.npos);
   EXPECT_TRUE(
       line.starts_with("{\"box_m\":[[4.3,-4.0,11.0],[10.3,2.0,17.0]],\"camera_convention\":"
-                       "\"opencv\",\"camera_to_world\":"));
+                       "\"opencv\",\"camera_model\":\"perspective\",\"camera_to_world\":"));
   // Another JSON library's idea of sorted keys without spaces agrees but for the spelling of
   // numbers.
   const auto parsed = nlohmann::json::parse(line);

@@ -183,6 +183,31 @@ TEST(DirectLight, DistantOnAPlane) {
   }
 }
 
+TEST(Cameras, ParallelRaysShowTheSameSizeAtAnyDistance) {
+  for (std::size_t type = 0; type < camera_types().size(); ++type) {
+    if (camera_types()[type].host.span != kernels::CameraSpan::extent_m) continue;
+    for (const float z : {0.5f, -3.0f, -4000.0f}) {
+      Picture p = above_plane({}, {0.5f, 0.5f, 0.5f});
+      p.scene.objects.clear();
+      p.scene.materials[0].emits = true;
+      p.scene.materials[0].emission.constant = {2, 2, 2};
+      // Pixels are 0.125 wide: 2 .. 5 of 8 across, 1 .. 2 of 4 down.
+      pictures::add_object(p.scene, pictures::quad({0, 0, z}, {0.25f, 0, 0}, {0, 0.125f, 0}), 0);
+      p.camera.type = static_cast<int>(type);
+      p.camera.extent_m = 1;
+      p.engine.width = 8;
+      p.engine.height = 4;
+      const Film film = pictures::trace(p);
+      for (int i = 0; i < 32; ++i) {
+        const int x = i % 8, y = i / 8;
+        const bool inside = x >= 2 && x < 6 && y >= 1 && y < 3;
+        EXPECT_EQ(film.rgb[static_cast<std::size_t>(3 * i)], inside ? 2.0f : 0.0f)
+            << z << ": " << x << ", " << y;
+      }
+    }
+  }
+}
+
 /// Lambert's formula: irradiance at `at`, normal +z, from a polygon above the horizon of
 /// radiance 1.
 double polygon_irradiance(Vec3d at, const std::vector<Vec3d>& corners) {

@@ -3,6 +3,7 @@
 
 #include "manifests/camera_geometry.h"
 #include "tracer/scene/sdl.h"
+#include "tracer/scene/type_tables.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +32,7 @@ void meet(const Object& object, int index, Vec3d from, Vec3d way, Hit& nearest) 
     const double t = dot(e2, q) / determinant;
     const double margin = std::min({b1, b2, 1 - b1 - b2});
     if (margin < 0 || t <= 0 || (nearest.object >= 0 && t >= nearest.depth)) continue;
-    Hit hit{index, t, t * length(way), from + way * t, {}, {}, 0, 0, margin};
+    Hit hit{index, t, t * length(way), from + way * t, {}, {}, -normalized(way), 0, 0, margin};
     const Vec3d normal = normalized(cross(e1, e2));
     const double side = dot(normal, way) < 0 ? 1 : -1;
     hit.normal = hit.shading = normal * side;
@@ -48,23 +49,51 @@ void meet(const Object& object, int index, Vec3d from, Vec3d way, Hit& nearest) 
   }
 }
 
+struct Ray {
+  Vec3d from, way;
+};
+
+/// From the camera's axes to the world's.
+Vec3d turned(const std::array<double, 16>& m, Vec3d v) {
+  return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z,
+          m[8] * v.x + m[9] * v.y + m[10] * v.z};
+}
+
+/// `ray_through(x, y)`: pixels, from the picture's top left corner.
+template <typename RayThrough>
+std::vector<Hit> cast_rays(const std::vector<Object>& objects, const std::vector<bool>& sees,
+                           int width, int height, const RayThrough& ray_through) {
+  std::vector<Hit> hits;
+  for (int i = 0; i < width * height; ++i) {
+    const Ray ray = ray_through(i % width + 0.5, i / width + 0.5);
+    Hit& nearest = hits.emplace_back();
+    for (std::size_t o = 0; o < objects.size(); ++o)
+      if (sees[o]) meet(objects[o], static_cast<int>(o), ray.from, ray.way, nearest);
+  }
+  return hits;
+}
+
 }  // namespace
 
 std::vector<Hit> cast(const std::vector<Object>& objects, const std::vector<bool>& sees,
                       const std::array<double, 9>& k, const std::array<double, 16>& m, int width,
                       int height) {
   const Vec3d from{m[3], m[7], m[11]};
-  std::vector<Hit> hits;
-  for (int i = 0; i < width * height; ++i) {
+  return cast_rays(objects, sees, width, height, [&](double column, double row) {
     // OpenCV's axes: x right, y down, z forward; z of the way is 1, so t is the planar depth.
-    const double x = (i % width + 0.5 - k[2]) / k[0], y = (i / width + 0.5 - k[5]) / k[4];
-    const Vec3d way{m[0] * x + m[1] * y + m[2], m[4] * x + m[5] * y + m[6],
-                    m[8] * x + m[9] * y + m[10]};
-    Hit& nearest = hits.emplace_back();
-    for (std::size_t o = 0; o < objects.size(); ++o)
-      if (sees[o]) meet(objects[o], static_cast<int>(o), from, way, nearest);
-  }
-  return hits;
+    const double x = (column - k[2]) / k[0], y = (row - k[5]) / k[4];
+    return Ray{from, turned(m, {x, y, 1})};
+  });
+}
+
+std::vector<Hit> cast_parallel(const std::vector<Object>& objects, const std::vector<bool>& sees,
+                               double metres_per_pixel, const std::array<double, 16>& m, int width,
+                               int height) {
+  return cast_rays(objects, sees, width, height, [&](double column, double row) {
+    const Vec3d aside{(column - width / 2.0) * metres_per_pixel,
+                      (row - height / 2.0) * metres_per_pixel, 0};
+    return Ray{Vec3d{m[3], m[7], m[11]} + turned(m, aside), turned(m, {0, 0, 1})};
+  });
 }
 
 namespace {
@@ -74,6 +103,9 @@ std::vector<Hit> cast_those(const Scene& scene, const Camera& camera, int width,
   std::vector<bool> sees;
   for (const Object& object : scene.objects)
     sees.push_back(seen(object));
+  if (type_of(camera).host.span == kernels::CameraSpan::extent_m)
+    return cast_parallel(scene.objects, sees, camera.extent_m / std::max(width, height),
+                         camera_pose(camera), width, height);
   return cast(scene.objects, sees, camera_intrinsics(camera.fov_deg, width, height),
               camera_pose(camera), width, height);
 }

@@ -17,6 +17,7 @@ struct Hit {
   Vec3d position{};                ///< world
   Vec3d normal{};                  ///< of the triangle, unit, towards the camera
   Vec3d shading{};                 ///< of the corners' normals, unit, on the same side as `normal`
+  Vec3d towards{};                 ///< where the ray came from, unit
   double u = 0, v = 0;             ///< of the corners'; 0 where the mesh has none
   double margin = 0;  ///< least barycentric weight: below 1e-4 or so another triangle may be met
 };
@@ -26,6 +27,12 @@ struct Hit {
 std::vector<Hit> cast(const std::vector<Object>& objects, const std::vector<bool>& sees,
                       const std::array<double, 9>& intrinsics,
                       const std::array<double, 16>& camera_to_world, int width, int height);
+
+/// The same where rays are parallel and a pixel is so wide.
+std::vector<Hit> cast_parallel(const std::vector<Object>& objects, const std::vector<bool>& sees,
+                               double metres_per_pixel,
+                               const std::array<double, 16>& camera_to_world, int width,
+                               int height);
 
 /// Of all that the camera sees, or of the model alone.
 std::vector<Hit> cast(const Scene& scene, const Camera& camera, int width, int height);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every material, texture, light and plane, the camera, weights of hits and surface points as C++
+// Every material, texture, light, camera and plane, weights of hits and surface points as C++
 // functions, one lane wide, in namespace ds::kernels. For the host's tables, for packing, and for
 // tests against closed forms.
 #pragma once

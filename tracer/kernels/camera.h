@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Perspective camera: pinhole, or thin lens where DS_LENS is defined.
+// The rays of a camera, pinhole, or thin lens where DS_LENS is defined: their starts and directions
+// go evenly over the picture. A camera NAME in cameras/NAME.h says how far, in a DS_HOOK_HOST part, by
+// CameraOnHost NAME_on_host of traits.h.
 #pragma once
 
 #include "tracer/kernels/sampler.h"

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "tracer/base/number_range.h"
+#include "tracer/base/tan_half.h"
 #include "tracer/base/vec.h"
 
 #include <bit>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every material, texture and light there is, for the host: X(SDL name, kernel prefix, PREFIX in
-// capitals) or, of lights, X(SDL name, kernel prefix). A scene's program gets a list of those it
-// uses; this file is in none, so a new line here makes no picture stale.
+// Every material, texture, light and camera there is, for the host: X(SDL name, kernel prefix, PREFIX
+// in capitals), of lights X(SDL name, kernel prefix), of cameras X(name). A scene's program gets a
+// list of those it uses; this file is in none, so a new line here makes no picture stale.
 #pragma once
 
 /// Those with a BSDF, and those that choose among other materials.
@@ -46,3 +46,7 @@
 /// Types of a file that become one of these: X(SDL name, kernel prefix of that); the SDL name is the
 /// prefix of NAME_reading, too.
 #define DS_MADE_LIGHTS(X) X(sky2, infinite)
+
+#define DS_ALL_CAMERAS(X) \
+  X(perspective)          \
+  X(orthographic)

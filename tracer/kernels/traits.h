@@ -58,3 +58,20 @@ struct LightOnHost {
   double (*power)(double luminance, const float* inputs, double scene_radius) = nullptr;
   void (*row)(const float* inputs, float* row) = nullptr;  ///< null: its row is the inputs
 };
+
+/// Half of what the longer side of a camera's picture shows: so much in the camera's plane, and so
+/// much more in each metre before it. Its rays through a pixel's middle start in that plane.
+struct CameraShape {
+  double at_camera_m = 0;
+  double per_metre = 0;
+};
+/// The unit, and so the member of Camera, in which that is told.
+enum class CameraSpan { fov_deg, extent_m };
+
+/// NAME_on_host, in the DS_HOOK_HOST part of a camera's header.
+struct CameraOnHost {
+  CameraSpan span;
+  std::string_view default_value, help;  ///< of the recipe's camera.fov_deg or camera.extent_m
+  NumberRange range;
+  CameraShape (*shape)(double span);
+};

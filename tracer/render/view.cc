@@ -8,6 +8,7 @@
 #include "tracer/render/engine_text.h"
 #include "tracer/render/film.h"
 #include "tracer/scene/sdl.h"
+#include "tracer/scene/type_tables.h"
 
 #include <algorithm>
 #include <array>
@@ -23,29 +24,6 @@ void store(float (&out)[3], Vec3d v) {
 }
 
 }  // namespace
-
-double tan_half(double angle_deg) {
-  // tan by three halvings of the angle, its Taylor series (error below 1e-17 under 0.2), and three
-  // doublings.
-  const double x = angle_deg * (3.14159265358979323846 / 180.0) / 2 / 8;
-  const double z = x * x;
-  constexpr std::array terms = {1.0,
-                                1.0 / 3,
-                                2.0 / 15,
-                                17.0 / 315,
-                                62.0 / 2835,
-                                1382.0 / 155925,
-                                21844.0 / 6081075,
-                                929569.0 / 638512875,
-                                6404582.0 / 10854718875.0};
-  double t = 0;
-  for (std::size_t i = terms.size(); i-- > 0;)
-    t = t * z + terms[i];
-  t *= x;
-  for (int i = 0; i < 3; ++i)
-    t = 2 * t / ((1 - t) * (1 + t));
-  return t;
-}
 
 CameraFrame camera_frame(const Camera& camera) {
   for (const Vec3d& v : {camera.position, camera.target, camera.up})
@@ -73,8 +51,10 @@ namespace {
 
 /// Readers hold recipes to this; a camera of a program's own comes here unchecked.
 void check_lens(const Camera& camera) {
-  if (!(camera.fov_deg > 0 && camera.fov_deg < 180))
-    fail(ErrorKind::recipe, "a camera's fov_deg must be in (0, 180), got {}", camera.fov_deg);
+  const CameraType& type = type_of(camera);
+  if (!type.host.range.contains(span_of(camera)))
+    fail(ErrorKind::recipe, "a camera's {} must be {}, got {}", type.span_name(),
+         type.host.range.text(), span_of(camera));
   if (!(camera.lens_radius_m >= 0 && std::isfinite(camera.lens_radius_m)))
     fail(ErrorKind::recipe, "a camera's lens_radius_m must be finite and not negative, got {}",
          camera.lens_radius_m);
@@ -89,14 +69,17 @@ void check_lens(const Camera& camera) {
 kernels::ViewData view_data(const Camera& camera, const EngineSettings& engine, double start_m) {
   const CameraFrame f = camera_frame(camera);
   check_lens(camera);
-  const double longer = std::max(engine.width, engine.height);
-  const double half = tan_half(camera.fov_deg);
-  const Vec3d right = f.right * (half * engine.width / longer);
-  const Vec3d up = f.up * (half * engine.height / longer);
+  const ShownSides sides = shown_by(camera, engine.width, engine.height);
+  const Vec3d right = f.right * sides.x_per_metre;
+  const Vec3d up = f.up * sides.y_per_metre;
   kernels::ViewData v{};
   store(v.start, camera.position + f.forward * start_m);
   store(v.start_right, right * start_m);
   store(v.start_up, up * start_m);
+  if (sides.x_m > 0) {
+    store(v.start_right, right * start_m + f.right * sides.x_m);
+    store(v.start_up, up * start_m + f.up * sides.y_m);
+  }
   v.start_depth = static_cast<float>(start_m);
   store(v.right, right);
   store(v.up, up);
@@ -131,10 +114,11 @@ std::string canonical_camera(const Camera& camera) {
   const auto add = [&](const char* name, Vec3d v) {
     text.add(name, std::span<const double>(std::array{v.x, v.y, v.z}));
   };
+  if (camera.type != 0) text.add("type", type_of(camera).name);
   add("position", camera.position);
   add("target", camera.target);
   add("up", camera.up);
-  text.add("fov_deg", camera.fov_deg);
+  text.add(type_of(camera).span_name(), span_of(camera));
   text.add("lens_radius_m", camera.lens_radius_m);
   // A pinhole has no focus.
   if (camera.lens_radius_m > 0) text.add("focus_distance_m", camera.focus_distance_m);

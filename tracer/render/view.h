@@ -25,12 +25,8 @@ CameraFrame camera_frame(const Camera& camera);
 /// from doubles, pixel by pixel.
 double ray_start_m(const Scene& scene, const Camera& camera, int width, int height);
 
-/// The constants the kernels take. fov_deg spans the longer side; rays start `start_m` before the
-/// camera. Throws Error(recipe) for a number of the camera out of its range (scene.h).
+/// The constants the kernels take, from the shape of the camera's type; rays start `start_m` before
+/// the camera. Throws Error(recipe) for a number of the camera out of its range (scene.h).
 kernels::ViewData view_data(const Camera& camera, const EngineSettings& engine, double start_m = 0);
-
-/// tan of half the angle, degrees in (0, 180), from + - * / and sqrt alone: the same bits on every
-/// machine.
-double tan_half(double angle_deg);
 
 }  // namespace ds

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/render/view.h"
+#include "tracer/scene/type_tables.h"
 
 #include <algorithm>
 #include <array>
@@ -18,12 +19,13 @@ constexpr double k_narrow_pixel = 5e-5;
 /// before what they could meet: several times what rounding the start to floats moves it.
 constexpr double k_margin = 1e-6;
 
-/// Whatever the rays of a picture can pass: before the camera, and from a lens that shows `radius`
-/// at the camera on to sides of these slopes. Coordinates are right, up and forward of the camera.
+/// Whatever the rays of a picture can pass: before the camera, and from a rectangle that holds their
+/// starts in its plane on to sides of these slopes. Coordinates are right, up and forward of the
+/// camera.
 struct Reach {
   Vec3d position;
   CameraFrame frame;
-  double slope_x = 0, slope_y = 0, radius = 0;
+  double slope_x = 0, slope_y = 0, start_x = 0, start_y = 0;
 
   Vec3d seen(Vec3 point) const {
     const Vec3d way = to_double(point) - position;
@@ -31,7 +33,7 @@ struct Reach {
   }
   /// How far inside the planes around it; negative: outside.
   std::array<double, 5> inside(Vec3d p) const {
-    const double x = radius + slope_x * p.z, y = radius + slope_y * p.z;
+    const double x = start_x + slope_x * p.z, y = start_y + slope_y * p.z;
     return {p.z, x - p.x, x + p.x, y - p.y, y + p.y};
   }
 };
@@ -39,11 +41,16 @@ struct Reach {
 Reach reach_of(const Camera& camera, int width, int height) {
   constexpr double k_wider = 1 + 1e-6;  // floats round pixels' places and the slopes
   const double longer = std::max(width, height);
-  const double half = tan_half(camera.fov_deg) * k_wider;
+  const kernels::CameraShape shape = type_of(camera).host.shape(span_of(camera));
+  const double half = shape.per_metre * k_wider, start = shape.at_camera_m * k_wider;
   const double lens = camera.lens_radius_m * k_wider;
   const double spread = lens > 0 ? lens / camera.focus_distance_m : 0;
-  return {camera.position, camera_frame(camera), half * width / longer + spread,
-          half * height / longer + spread, lens};
+  return {camera.position,
+          camera_frame(camera),
+          half * width / longer + spread,
+          half * height / longer + spread,
+          start * width / longer + lens,
+          start * height / longer + lens};
 }
 
 /// The part of a convex polygon inside plane `side` of the reach.
@@ -78,7 +85,11 @@ double nearest_depth(const Reach& reach, const Mesh& mesh, double nearest) {
 }  // namespace
 
 double ray_start_m(const Scene& scene, const Camera& camera, int width, int height) {
-  if (!(2 * tan_half(camera.fov_deg) < k_narrow_pixel * std::max(width, height))) return 0;
+  const kernels::CameraShape shape = type_of(camera).host.shape(span_of(camera));
+  // As wide as it is at the target.
+  const double slope =
+      shape.per_metre + shape.at_camera_m / length(camera.target - camera.position);
+  if (!(2 * slope < k_narrow_pixel * std::max(width, height))) return 0;
   const Reach reach = reach_of(camera, width, height);
   constexpr double k_nothing = std::numeric_limits<double>::infinity();
   double nearest = k_nothing;

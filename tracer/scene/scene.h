@@ -139,12 +139,15 @@ struct Scene {
   bool lost_faces = false;  ///< one of them did when it was read
 };
 
-/// Perspective camera with an optional thin lens.
+/// A camera, with an optional thin lens.
 struct Camera {
+  int type = 0;  ///< row of camera_types(): perspective
   Vec3d position{0.252, 0, 0};
   Vec3d target{};
   Vec3d up{0, 0, 1};
-  double fov_deg = 49;              ///< full angle over the longer image side, (0, 180)
+  // One of these two, as the type says, is how much the longer image side shows:
+  double fov_deg = 49;              ///< full angle; perspective: (0, 180)
+  double extent_m = 0.23;           ///< metres, above 0
   double lens_radius_m = 0;         ///< 0: pinhole
   double focus_distance_m = 0.252;  ///< along the viewing axis, > 0
 };

@@ -202,6 +202,38 @@ Vec3 light_vector(const Light& light, std::string_view input) {
   return {v[0], v[1], v[2]};
 }
 
+std::span<const CameraType> camera_types() {
+#define DS_CAMERA_ROW(name) CameraType{#name, kernels::name##_on_host},
+  static constexpr std::array rows = {DS_ALL_CAMERAS(DS_CAMERA_ROW)};
+#undef DS_CAMERA_ROW
+  return rows;
+}
+
+int find_camera_type(std::string_view name) {
+  return find_named(camera_types(), name);
+}
+
+const CameraType& type_of(const Camera& camera) {
+  DS_ASSERT(camera.type >= 0 && static_cast<std::size_t>(camera.type) < camera_types().size());
+  return camera_types()[static_cast<std::size_t>(camera.type)];
+}
+
+double& span_of(Camera& camera) {
+  return type_of(camera).host.span == kernels::CameraSpan::fov_deg ? camera.fov_deg
+                                                                   : camera.extent_m;
+}
+double span_of(const Camera& camera) {
+  Camera copy = camera;
+  return span_of(copy);
+}
+
+ShownSides shown_by(const Camera& camera, int width, int height) {
+  const kernels::CameraShape shape = type_of(camera).host.shape(span_of(camera));
+  const double longer = std::max(width, height);
+  return {shape.at_camera_m * width / longer, shape.at_camera_m * height / longer,
+          shape.per_metre * width / longer, shape.per_metre * height / longer};
+}
+
 int find_type(std::span<const NodeType> types, std::string_view name) {
   return find_named(types, name);
 }

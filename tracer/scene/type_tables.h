@@ -58,6 +58,17 @@ struct LightType {
   DS_KERNELS::LightOnHost host;
 };
 
+/// One kind of camera: of tracer/kernels/cameras/NAME.h.
+struct CameraType {
+  std::string_view name;  ///< the recipe's camera.type
+  kernels::CameraOnHost host;
+
+  /// "fov_deg" or "extent_m": of the recipe's key, in keys and manifests.
+  std::string_view span_name() const {
+    return host.span == kernels::CameraSpan::fov_deg ? "fov_deg" : "extent_m";
+  }
+};
+
 /// Whether a type has one of these traits.
 template <typename Type>
 bool has_trait(const Type& type, unsigned traits) {
@@ -83,8 +94,22 @@ const float* light_value(const Light& light, std::string_view input);
 void set_light_value(Light& light, std::string_view input, Vec3 value);
 Vec3 light_vector(const Light& light, std::string_view input);
 
+/// In that order too, for Camera::type.
+std::span<const CameraType> camera_types();
+/// The row of a name, or -1.
+int find_camera_type(std::string_view name);
+const CameraType& type_of(const Camera& camera);
+double& span_of(Camera& camera);
+double span_of(const Camera& camera);
+/// What the camera shows: half of the picture's width (x) and height (y), in its plane and more in
+/// each metre before it.
+struct ShownSides {
+  double x_m = 0, y_m = 0, x_per_metre = 0, y_per_metre = 0;
+};
+ShownSides shown_by(const Camera& camera, int width, int height);
+
 /// What a kernel header says first: the paragraph at its top, on one line. `folder` is "materials",
-/// "textures", "lights" or "planes".
+/// "textures", "lights", "cameras" or "planes".
 std::string header_comment(std::string_view folder, std::string_view prefix);
 
 /// Row of the type, or -1.

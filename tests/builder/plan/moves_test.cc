@@ -3,7 +3,9 @@
 // and compared.
 #include "builder/recipe/keys.h"
 #include "tests/builder/tiny_dataset.h"
+#include "tracer/scene/type_tables.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -97,8 +99,32 @@ class Moving : public TinyDataset {
   }
 };
 
+/// Keys of one value only.
+std::vector<std::string_view> fixed_keys() {
+  std::vector<std::string_view> fixed = {"classes.split.by"};
+  if (camera_types().size() == 1) fixed.push_back("camera.type");
+  return fixed;
+}
+
+/// What the table of cameras adds to the keys.
+std::vector<Flip> camera_flips() {
+  std::vector<Flip> flips;
+  const auto literal = [](std::size_t type) {
+    return fmt::format("\"{}\"", camera_types()[type].name);
+  };
+  if (camera_types().size() > 1)
+    flips.push_back({"camera.type", literal(0), literal(camera_types().size() - 1)});
+  for (std::size_t i = 0; i < camera_types().size(); ++i)
+    if (camera_types()[i].host.span == kernels::CameraSpan::extent_m) {
+      flips.push_back({"camera.extent_m", "0.2", "0.3", {"camera.type=" + literal(i)}});
+      break;
+    }
+  return flips;
+}
+
 std::vector<Flip> Moving::flips() const {
-  return {
+  std::vector<Flip> flips = camera_flips();
+  const std::vector<Flip> others = {
       {"dataset.name", "\"one\"", "\"other\""},
       {"dataset.seed", "1", "2"},
       {"dataset.licence", "\"\"", "\"CC0-1.0\""},
@@ -172,11 +198,14 @@ std::vector<Flip> Moving::flips() const {
       {"outputs.tone_map_gamma", "2.2", "2", {k_linear}},
       {"outputs.keep_film", "true", "false"},
   };
+  flips.insert(flips.end(), others.begin(), others.end());
+  return flips;
 }
 
 TEST_F(Moving, EveryKeyMovesWhatItsRowSays) {
-  std::vector<std::string_view> flipped = {"classes.split.by"};  // there is one value only
-  for (const Flip& flip : flips()) {
+  std::vector<std::string_view> flipped = fixed_keys();
+  const std::vector<Flip> all = flips();
+  for (const Flip& flip : all) {
     flipped.push_back(flip.key);
     const KeySpec* row = find_key(flip.key);
     ASSERT_NE(row, nullptr) << flip.key;

@@ -2,6 +2,7 @@
 #include "builder/recipe/camera_fit.h"
 
 #include "tracer/base/error.h"
+#include "tracer/scene/type_tables.h"
 
 #include <gtest/gtest.h>
 
@@ -63,6 +64,23 @@ TEST(CameraFitTest, the_sphere_just_touches_the_margin) {
             const Vec3d sight = normalized(fitted.target - fitted.position);
             EXPECT_NEAR(length(sight + normalized(direction)), 0, 1e-9);
           }
+}
+
+TEST(CameraFitTest, parallel_rays_show_the_sphere_and_its_margin) {
+  for (std::size_t type = 0; type < camera_types().size(); ++type) {
+    if (camera_types()[type].host.span != kernels::CameraSpan::extent_m) continue;
+    Camera camera = camera_at({0, -1, 0}, {0.02, 0, 0});
+    camera.type = static_cast<int>(type);
+    // Of a picture twice as wide as it is high, x is 0.02 from the middle and 0.1 away, z 0.1.
+    const Camera fitted = fit_camera(camera, {0.5, CameraFit::Focus::target}, {{}, 0.1}, 64, 32);
+    EXPECT_NEAR(fitted.extent_m, 2 * 0.1 * 2 / 0.5, 1e-12);
+    const Camera tall = fit_camera(camera, {0, CameraFit::Focus::target}, {{}, 0.1}, 32, 64);
+    EXPECT_NEAR(tall.extent_m, 2 * 0.12 * 2, 1e-12);
+    // It stands a diameter before the sphere's middle.
+    EXPECT_NEAR(fitted.position.y, -0.2, 1e-12);
+    EXPECT_NEAR(fitted.position.x, 0.02, 1e-12);
+    EXPECT_NEAR(fitted.focus_distance_m, 0.2, 1e-12);
+  }
 }
 
 TEST(CameraFitTest, a_sphere_at_the_target_has_a_closed_form) {

@@ -3,7 +3,9 @@
 
 #include "manifests/camera_geometry.h"
 #include "tests/builder/recipe_folder.h"
+#include "tracer/scene/type_tables.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -171,6 +173,27 @@ TEST_F(CameraSetsTest, ReportWhatCannotBeSeen) {
             "r.toml:4:14: camera.set must be \"half-dodecahedron\" or \"list\" or \"orbit\" or "
             "\"hemisphere\", got "
             "\"dodecahedron\"");
+}
+
+TEST(CameraTypes, AreReadFromTheirTable) {
+  const RecipeFolder folder;
+  EXPECT_EQ(folder.read("").cameras[0].type, 0);
+  for (std::size_t i = 0; i < camera_types().size(); ++i) {
+    const CameraType& type = camera_types()[i];
+    const std::string lines = fmt::format("camera.type = \"{}\"\n", type.name);
+    const Camera camera = folder.read(lines).cameras[0];
+    EXPECT_EQ(camera.type, static_cast<int>(i));
+    EXPECT_EQ(span_of(camera), std::stod(std::string(type.host.default_value)));
+    const std::string key = fmt::format("camera.{}", type.span_name());
+    EXPECT_EQ(span_of(folder.read(lines + key + " = 0.5\n").cameras[0]), 0.5);
+    EXPECT_THAT(folder.findings(lines + key + " = 0\n"), testing::HasSubstr(key + " must be"));
+    if (type.host.span != kernels::CameraSpan::extent_m) continue;
+    EXPECT_THAT(folder.findings(lines + "camera.fov_deg = 50\n"),
+                testing::HasSubstr("camera.fov_deg has no effect"));
+    EXPECT_THAT(folder.findings(lines + key + " = 0.5\ncamera.distance_m = \"fit\"\n"),
+                testing::HasSubstr(key + " must not be given with camera.distance_m = \"fit\""));
+    EXPECT_TRUE(folder.read(lines + "camera.distance_m = \"fit\"\n").camera_fit);
+  }
 }
 
 }  // namespace

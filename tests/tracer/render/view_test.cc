@@ -3,6 +3,8 @@
 
 #include "tests/render/pictures.h"
 #include "tracer/base/error.h"
+#include "tracer/base/tan_half.h"
+#include "tracer/scene/type_tables.h"
 
 #include <gtest/gtest.h>
 
@@ -67,6 +69,36 @@ TEST(ViewData, TheFieldOfViewSpansTheLongerSide) {
     const kernels::ViewData v = view_data(camera, engine);
     EXPECT_NEAR(double{v.right[0]}, half * std::min(1.0, width / double(height)), 1e-6);
     EXPECT_NEAR(double{v.up[2]}, half * std::min(1.0, height / double(width)), 1e-6);
+  }
+}
+
+TEST(ViewData, ParallelRaysStartInTheCamerasPlane) {
+  EngineSettings engine;
+  for (std::size_t type = 0; type < camera_types().size(); ++type) {
+    if (camera_types()[type].host.span != kernels::CameraSpan::extent_m) continue;
+    Camera camera = looking({0, -1, 0}, {0, 0, 0});
+    camera.type = static_cast<int>(type);
+    camera.extent_m = 0.5;
+    for (const auto& [width, height] : {std::pair{400, 100}, {100, 400}, {64, 64}})
+      for (const double start_m : {0.0, 0.75}) {
+        engine.width = width;
+        engine.height = height;
+        const kernels::ViewData v = view_data(camera, engine, start_m);
+        EXPECT_NEAR(double{v.start_right[0]}, 0.25 * std::min(1.0, width / double(height)), 1e-7);
+        EXPECT_NEAR(double{v.start_up[2]}, 0.25 * std::min(1.0, height / double(width)), 1e-7);
+        EXPECT_NEAR(double{v.start[1]}, start_m - 1, 1e-7);
+        for (int axis = 0; axis < 3; ++axis) {
+          EXPECT_EQ(v.right[axis], 0);
+          EXPECT_EQ(v.up[axis], 0);
+        }
+        EXPECT_EQ(v.forward[1], 1);
+      }
+    EXPECT_NE(canonical_camera(camera), canonical_camera(looking({0, -1, 0}, {0, 0, 0})));
+    const std::string text = canonical_camera(camera);
+    camera.fov_deg = 20;
+    EXPECT_EQ(canonical_camera(camera), text);
+    camera.extent_m = 0.25;
+    EXPECT_NE(canonical_camera(camera), text);
   }
 }
 
