@@ -219,8 +219,7 @@ void Bop::add_labels(Scene& scene, const ExportImage& image, const DepthPixels& 
                                      {"cam_R_m2c", rotation_of(to_camera)},
                                      {"cam_t_m2c", translation_of(to_camera)}}}));
   const MaskPixels mask = read_mask(input_, image), whole = read_mask(input_, image, "amodal_mask");
-  const Silhouette all =
-      silhouette(model_, to_camera, pinhole, record.width, record.height);
+  const Silhouette all = silhouette(model_, to_camera, pinhole, record.width, record.height);
   if (!all.whole)
     to_.note("models of which some is behind the camera: px_count_all and bbox_obj lack that");
   // By the picture's own rays where it holds all of the model.
