@@ -61,11 +61,11 @@ struct LightType {
 /// One kind of camera: of tracer/kernels/cameras/NAME.h.
 struct CameraType {
   std::string_view name;  ///< the recipe's camera.type
-  kernels::CameraOnHost host;
+  DS_KERNELS::CameraOnHost host;
 
   /// "fov_deg" or "extent_m": of the recipe's key, in keys and manifests.
   std::string_view span_name() const {
-    return host.span == kernels::CameraSpan::fov_deg ? "fov_deg" : "extent_m";
+    return host.span == DS_KERNELS::CameraSpan::fov_deg ? "fov_deg" : "extent_m";
   }
 };
 
