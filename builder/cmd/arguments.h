@@ -21,7 +21,7 @@ struct Arguments {
   std::string output_folder, store_folder, device;
   std::string shard = "1/1";
   std::uint64_t rerender = 0, seed = 0;
-  std::string format, export_folder, hierarchy;
+  std::string format, export_folder, gallery_folder, hierarchy;
   std::string import_from, import_psb, import_folder;
   std::vector<std::string> splits, filters, only;
   std::string report_file, against;
@@ -70,6 +70,7 @@ enum class Option {
   seed,
   format,
   export_folder,
+  gallery_folder,
   splits,
   hierarchy,
   filters,

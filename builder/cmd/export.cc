@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "manifests/export/export.h"
 
+#include "builder/cmd/from_manifest.h"
 #include "builder/cmd/plan_text.h"
-#include "builder/cmd/progress.h"
 #include "builder/cmd/stop_signal.h"
 #include "builder/cmd/verbs.h"
 #include "builder/cmd/work_progress.h"
-#include "builder/plan/plan.h"
 #include "tracer/base/error.h"
 #include "tracer/base/log.h"
 #include "tracer/base/streams.h"
@@ -18,26 +17,6 @@
 
 namespace ds {
 namespace {
-
-/// What the dataset lacks of its recipe; "" where nothing, or where nobody can tell: an export is of
-/// what the manifest lists.
-std::string behind(const Arguments& arguments) {
-  try {
-    RealDisk disk;
-    Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
-    Inputs inputs(*dataset.database, Stamps::trust);
-    const Plan plan = make_plan(dataset, inputs, false);
-    const PlanCounts counts = count(plan);
-    if (counts.stale > 0 || counts.failed > 0)
-      return fmt::format(
-          "{} of {} images are not as their recipe wants them; exported is what the "
-          "manifest lists (dsbuild build first?)",
-          counts.stale + counts.failed, counts.images);
-    return manifest_line(plan.manifest);
-  } catch (const Error&) {
-    return "";
-  }
-}
 
 std::vector<std::pair<std::string, std::string>> filters_of(const Arguments& arguments) {
   std::vector<std::pair<std::string, std::string>> filters;
@@ -87,7 +66,9 @@ int run_export(const Arguments& arguments) {
   ExportRequest request{folder,           arguments.export_folder, arguments.format,
                         arguments.splits, filters_of(arguments),   arguments.hierarchy,
                         arguments.copy,   mesh_reader(arguments),  {}};
-  if (const std::string why = behind(arguments); !why.empty()) request.notes.push_back(why);
+  if (const std::string why = behind_recipe(arguments, "exported is what the manifest lists");
+      !why.empty())
+    request.notes.push_back(why);
   const ExportResult result = run(request);
   for (const std::string& note : result.notes)
     warn(note);

@@ -190,6 +190,12 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
           ->required()
           ->type_name("DIR");
       return;
+    case Option::gallery_folder:
+      verb.add_option("-o,--output", to.gallery_folder,
+                      "the gallery's folder, made whole or not at all; a gallery there is replaced "
+                      "[gallery in the dataset's folder]")
+          ->type_name("DIR");
+      return;
     case Option::splits:
       verb.add_option("--split", to.splits, "images of this split only (repeatable) [all]")
           ->allow_extra_args(false)

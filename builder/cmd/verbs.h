@@ -11,6 +11,7 @@ int run_status(const Arguments& arguments);
 int run_check(const Arguments& arguments);
 int run_classes(const Arguments& arguments);
 int run_export(const Arguments& arguments);
+int run_gallery(const Arguments& arguments);
 int run_explain(const Arguments& arguments);
 int run_verify(const Arguments& arguments);
 int run_models(const Arguments& arguments);

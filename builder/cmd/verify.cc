@@ -104,7 +104,7 @@ std::string cause_of(const Finding& finding) {
   return with_replaced(finding.what, finding.path, "*");
 }
 
-void print_findings(const VerifyResult& result, bool all, bool exported) {
+void print_findings(const VerifyResult& result, bool all, const WholeFolderKind* whole) {
   Groups groups;
   for (const Finding& finding : result.findings) {
     const std::string kind = to_string(finding.kind);
@@ -115,11 +115,12 @@ void print_findings(const VerifyResult& result, bool all, bool exported) {
       groups.add(cause_of(finding), fmt::format("{}: {}", kind, finding.path), line);
   }
   groups.print(Stream::result, false);
-  say(Stream::result, "{}{} files: ", exported ? "" : fmt::format("{} images, ", result.images),
+  say(Stream::result, "{}{} files: ", whole ? "" : fmt::format("{} images, ", result.images),
       result.files);
   if (result.rerendered > 0) say(Stream::result, "{} images traced again: ", result.rerendered);
   if (result.findings.empty())
-    say(Stream::result, "all as the {}\n", exported ? "export's checksums say" : "manifest says");
+    say(Stream::result, "all as the {}\n",
+        whole ? fmt::format("{}'s checksums say", whole->name) : "manifest says");
   else
     say(Stream::result, "{} difference{}\n", result.findings.size(),
         result.findings.size() == 1 ? "" : "s");
@@ -128,19 +129,19 @@ void print_findings(const VerifyResult& result, bool all, bool exported) {
 }  // namespace
 
 int run_verify(const Arguments& arguments) {
-  const bool exported = is_export(arguments.target);
+  const WholeFolderKind* const whole = whole_folder_kind(arguments.target);
   const std::filesystem::path folder =
-      exported ? std::filesystem::path(arguments.target) : dataset_folder(arguments.request());
-  const std::string unfinished = exported ? "" : unfinished_build(folder);
+      whole ? std::filesystem::path(arguments.target) : dataset_folder(arguments.request());
+  const std::string unfinished = whole ? "" : unfinished_build(folder);
   VerifyResult result;
   try {
-    result = exported ? verify_export(folder) : verify_files(folder);
+    result = whole ? verify_whole_folder(folder, *whole) : verify_files(folder);
   } catch (const Error&) {
     print_unfinished(arguments.json ? "" : unfinished);  // why there is no manifest yet
     throw;
   }
   std::string not_checked;
-  if (exported)
+  if (whole)
     not_checked = "";
   else if (!result.has_manifest)
     not_checked = "the manifest cannot be read; the next build writes it anew";
@@ -162,7 +163,7 @@ int run_verify(const Arguments& arguments) {
          {"not_checked", not_checked.empty() ? nlohmann::json() : nlohmann::json(not_checked)},
          {"findings", findings}});
   } else {
-    print_findings(result, arguments.verbose, exported);
+    print_findings(result, arguments.verbose, whole);
     if (!not_checked.empty()) print_not_checked(not_checked);
     print_unfinished(unfinished);
   }

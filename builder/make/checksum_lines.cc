@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/make/checksum_lines.h"
 
+#include "manifests/whole_folder.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
 #include "tracer/base/hash_stream.h"
@@ -12,6 +13,15 @@
 namespace ds {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// A gallery has checksums of its own; or what one that was killed left beside its place.
+bool is_of_gallery(const fs::path& folder) {
+  return folder.filename() == k_gallery_folder.work || is_whole_folder(folder, k_gallery_folder);
+}
+
+}  // namespace
 
 std::optional<std::map<std::string, Hash128>> read_checksums(VerifyResult& result,
                                                              const fs::path& folder,
@@ -51,13 +61,13 @@ void find_extra(VerifyResult& result, const fs::path& folder,
   fs::recursive_directory_iterator entry(folder, error);
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
     const std::string path = entry->path().lexically_relative(folder).generic_string();
-    if (path == ".dsbuild") {
+    std::error_code vanished;
+    const bool is_folder = entry->is_directory(vanished);
+    if (path == ".dsbuild" || (is_folder && is_of_gallery(entry->path()))) {
       entry.disable_recursion_pending();
       continue;
     }
-    std::error_code vanished;
-    if (!entry->is_directory(vanished) && !own.contains(path) && !listed.contains(path))
-      extra.push_back(path);
+    if (!is_folder && !own.contains(path) && !listed.contains(path)) extra.push_back(path);
   }
   if (error)
     result.findings.push_back(

@@ -4,7 +4,6 @@
 #include "builder/make/checksum_lines.h"
 #include "builder/make/older_lines.h"
 #include "builder/make/plane_outputs.h"
-#include "manifests/export/export_folder.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
 #include "tracer/base/hash_stream.h"
@@ -275,16 +274,11 @@ VerifyResult verify_files(const fs::path& folder) {
   return result;
 }
 
-bool is_export(const fs::path& folder) {
-  std::error_code error;
-  return fs::exists(folder / k_export_record, error);
-}
-
-VerifyResult verify_export(const fs::path& folder) {
+VerifyResult verify_whole_folder(const fs::path& folder, const WholeFolderKind& kind) {
   VerifyResult result;
-  const std::set<std::string> own{k_export_checksums};
-  if (const auto sums = read_checksums(result, folder, k_export_checksums)) {
-    compare_with_checksums(result, folder, *sums, own, k_export_checksums);
+  const std::set<std::string> own{kind.checksums};
+  if (const auto sums = read_checksums(result, folder, kind.checksums)) {
+    compare_with_checksums(result, folder, *sums, own, kind.checksums);
     find_extra(result, folder, *sums, own);
   }
   return result;

@@ -4,6 +4,7 @@
 #include "builder/make/renderer.h"
 #include "builder/plan/plan.h"
 #include "manifests/manifest.h"
+#include "manifests/whole_folder.h"
 
 #include <atomic>
 #include <cstdint>
@@ -43,10 +44,8 @@ struct VerifyResult {
 /// the files are compared with the checksum file.
 VerifyResult verify_files(const std::filesystem::path& folder);
 
-/// An export against its own checksums. `images` stays 0.
-VerifyResult verify_export(const std::filesystem::path& folder);
-/// Whether `dsbuild export` made the folder.
-bool is_export(const std::filesystem::path& folder);
+/// An export or a gallery against its own checksums. `images` stays 0.
+VerifyResult verify_whole_folder(const std::filesystem::path& folder, const WholeFolderKind& kind);
 
 /// Adds what only the recipe and the database can tell: images the manifest lacks or has too many
 /// of, keys of an older recipe, a manifest that is not the one written.

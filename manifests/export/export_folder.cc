@@ -3,13 +3,8 @@
 
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
-#include "tracer/base/process_folder.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fcntl.h>
-#include <stdio.h>
 #include <system_error>
 #include <utility>
 
@@ -18,28 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Beside the export's folder, so that it can be renamed into its place.
-constexpr const char* k_work_folder = ".dsbuild-export";
 constexpr std::size_t k_most_in_batch = 256;
-
-[[noreturn]] void fail_rename(const fs::path& to) {
-  fail(ErrorKind::io, "{}: cannot be replaced: {}", to.string(), std::strerror(errno));
-}
-
-/// Where something stands there, both change places.
-void rename_or_exchange(const fs::path& from, const fs::path& to) {
-  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return;
-  if (errno == EEXIST &&
-      ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0)
-    return;
-  if (errno != EINVAL && errno != ENOSYS) fail_rename(to);
-  // A file system that knows neither: for a moment nothing stands there.
-  std::error_code error;
-  const fs::path aside = from.string() + ".old";
-  if (fs::exists(to, error) && ::rename(to.c_str(), aside.c_str()) != 0) fail_rename(to);
-  if (::rename(from.c_str(), to.c_str()) != 0) fail_rename(to);
-  fs::remove_all(aside, error);
-}
 
 std::string checked(std::string path) {
   check_manifest_path(path);
@@ -58,26 +32,13 @@ bool is_inside(const fs::path& path, const fs::path& folder) {
   return end == folder.end();
 }
 
-/// An export in a dataset would be taken for its files, and the other way round.
-void check_apart(const fs::path& dataset, const fs::path& to) {
-  if (is_inside(to, dataset) || is_inside(dataset, to))
+/// `to`: an export in a dataset would be taken for its files, and the other way round.
+const fs::path& apart(const fs::path& dataset, const fs::path& to) {
+  const fs::path own = place_of(dataset), other = place_of(to);
+  if (is_inside(other, own) || is_inside(own, other))
     fail(ErrorKind::usage, "-o {}: wanted a folder apart from the dataset's, {}", to.string(),
          dataset.string());
-}
-
-/// Throws where an export that is to be replaced holds files that somebody put there.
-void check_own(const fs::path& to) {
-  const std::map<std::string, Hash128> own = read_checksum_file(to / k_export_checksums);
-  std::error_code error;
-  for (fs::recursive_directory_iterator entry(to, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::string path = entry->path().lexically_relative(to).generic_string();
-    if (!entry->is_directory(error) && path != k_export_checksums && !own.contains(path))
-      fail(ErrorKind::usage,
-           "-o {}: holds {}, which no export put there and a new one would take away; move it, or "
-           "export to another folder",
-           to.string(), path);
-  }
+  return to;
 }
 
 }  // namespace
@@ -101,37 +62,12 @@ std::string read_checked(const fs::path& folder, const FileRecord& file) {
 }
 
 ExportFolder::ExportFolder(fs::path from, fs::path to, bool copy)
-    : from_(std::move(from)), to_(fs::absolute(to).lexically_normal()), copy_(copy) {
-  if (!to_.has_filename()) to_ = to_.parent_path();
-  // What a link leads to is written, and the link stays.
-  std::error_code error;
-  if (const fs::path real = fs::canonical(to_, error); !error) to_ = real;
-  check_apart(place_of(from_), place_of(to_));
-  const bool replaces = fs::exists(to_ / k_export_record, error);
-  if (fs::exists(to_, error) && !replaces &&
-      !(fs::is_directory(to_, error) && fs::is_empty(to_, error)))
-    fail(ErrorKind::usage, "-o {}: is there already and no export of dsbuild; wanted a new folder",
-         to_.string());
-  if (replaces) check_own(to_);
-  work_.path = make_process_folder(to_.parent_path() / k_work_folder);
-  folder_ = work_.path / to_.filename();
-  make_folders(folder_);
-}
+    : from_(std::move(from)), whole_(apart(from_, to), k_export_folder), copy_(copy) {}
 
 ExportFolder::~ExportFolder() = default;
 
-ExportFolder::WorkFolder::~WorkFolder() {
-  if (path.empty()) return;
-  std::error_code ignored;
-  fs::remove_all(path, ignored);
-  fs::remove(path.string() + ".lock", ignored);
-  fs::remove(path.parent_path(), ignored);  // where no other export is under way
-}
-
 void ExportFolder::enter(const std::string& path, Hash128 hash, std::uint64_t bytes) {
-  check_manifest_path(path);
-  if (!checksums_.emplace(path, hash).second)
-    fail(ErrorKind::asset, "two images would be exported as {}", path);
+  whole_.enter(path, hash);
   bytes_ += bytes;
 }
 
@@ -150,20 +86,20 @@ void ExportFolder::place(const FileRecord& file, const std::string& path) {
   enter(path, file.hashes.xxh128, file.hashes.size_bytes);
   if (!batch_) batch_ = std::make_unique<FileBatch>();
   if (copy_)
-    batch_->copy(from_ / file.path, folder_ / path);
+    batch_->copy(from_ / file.path, whole_.folder() / path);
   else
-    batch_->link(from_ / file.path, folder_ / path);
+    batch_->link(from_ / file.path, whole_.folder() / path);
   if (++in_batch_ == k_most_in_batch) flush();
 }
 
 void ExportFolder::write(const std::string& path, std::string_view text) {
   check_manifest_path(path);
   enter(path, hash_text(text), text.size());
-  write_file_atomic(folder_ / path, text);
+  write_file_atomic(whole_.folder() / path, text);
 }
 
 ExportFolder::Stream::Stream(ExportFolder& folder, std::string path)
-    : folder_(folder), path_(checked(std::move(path))), writer_(folder.folder_ / path_) {}
+    : folder_(folder), path_(checked(std::move(path))), writer_(folder.whole_.folder() / path_) {}
 
 void ExportFolder::Stream::write(std::string_view text) {
   writer_.write(text);
@@ -182,13 +118,8 @@ void ExportFolder::note(const std::string& text) {
 
 void ExportFolder::commit(const std::string& record) {
   flush();
-  write(k_export_record, record);
-  std::string sums;
-  for (const auto& [path, hash] : checksums_)
-    sums += fmt::format("{}  {}\n", hash.hex(), path);
-  write_file_atomic(folder_ / k_export_checksums, sums);
-  rename_or_exchange(folder_, to_);
-  sync_folder(to_.parent_path());
+  write(k_export_folder.record, record);
+  whole_.commit();
 }
 
 }  // namespace ds

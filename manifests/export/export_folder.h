@@ -2,13 +2,13 @@
 #pragma once
 
 #include "manifests/manifest.h"
+#include "manifests/whole_folder.h"
 #include "tracer/base/file_batch.h"
 #include "tracer/base/file_writer.h"
 #include "tracer/base/hash_stream.h"
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -16,16 +16,11 @@
 
 namespace ds {
 
-/// In an export's folder: what it is of, and checksums of all its files as in a dataset's manifest.
-inline constexpr const char* k_export_record = ".dsbuild-export/export.json";
-inline constexpr const char* k_export_checksums = ".dsbuild-export/checksums.xxh128";
-
 /// The bytes of a dataset's file. Throws Error(asset) where they are not those that the manifest has.
 std::string read_checked(const std::filesystem::path& folder, const FileRecord& file);
 
-/// The folder that an export makes: all of it or nothing. It is written beside its place, and takes
-/// it in `commit`; of an export that was killed the next one into that folder's parent removes what
-/// it left. Paths are relative to the folder.
+/// The folder that an export makes: all of it or nothing (WholeFolder). Paths are relative to the
+/// folder.
 class ExportFolder {
  public:
   /// `from`: the dataset's folder. Throws Error(usage) where `to` is there and no export; with
@@ -61,7 +56,7 @@ class ExportFolder {
   /// export.json.
   void note(const std::string& text);
   const std::vector<std::string>& notes() const { return notes_; }
-  std::uint64_t files() const { return checksums_.size(); }
+  std::uint64_t files() const { return whole_.files(); }
   std::uint64_t bytes() const { return bytes_; }
 
   /// `record`: of export.json. Replaces an export that stands there.
@@ -71,16 +66,9 @@ class ExportFolder {
   void enter(const std::string& path, Hash128 hash, std::uint64_t bytes);
   void flush();
 
-  /// Removed with all that is in it, also where an export fails as it begins.
-  struct WorkFolder {
-    std::filesystem::path path;
-    ~WorkFolder();
-  };
-
-  WorkFolder work_;  ///< before `batch_`, which writes into it
-  std::filesystem::path from_, to_, folder_;
+  std::filesystem::path from_;
+  WholeFolder whole_;  ///< before `batch_`, which writes into it
   bool copy_;
-  std::map<std::string, Hash128> checksums_;
   std::uint64_t bytes_ = 0;
   std::vector<std::string> notes_;
   std::unique_ptr<FileBatch> batch_;

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A headless chromium and the DevTools protocol over a pipe: JSON texts that end in a zero byte, fd 3 in, fd 4 out."""
+import base64
 import json
 import os
+import pathlib
 import select
 import shutil
 import signal
@@ -20,7 +22,7 @@ def find_browser():
 class Browser:
     """One page in one browser; `events` keeps whatever the page reported."""
 
-    def __init__(self, executable):
+    def __init__(self, executable, *options):
         self.events = []
         self._profile = tempfile.TemporaryDirectory(prefix="dsbuild-browser-")
         to_browser, self._out = os.pipe()
@@ -37,7 +39,7 @@ class Browser:
         self._process = subprocess.Popen(
             [executable, "--headless", "--no-sandbox", "--disable-gpu", "--disable-extensions",
              "--disable-background-networking", "--no-first-run", "--remote-debugging-pipe",
-             f"--user-data-dir={self._profile.name}", "about:blank"],
+             f"--user-data-dir={self._profile.name}", *options, "about:blank"],
             preexec_fn=take_pipes, close_fds=False, start_new_session=True, stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=dict(os.environ, HOME=self._profile.name))
         os.close(to_browser)
@@ -98,17 +100,40 @@ class Browser:
                 return answer["result"]
 
     def open(self, url):
+        self.events = []
         self.call("Page.navigate", url=url)
         deadline = time.monotonic() + TIMEOUT_S
         while not any(event["method"] == "Page.loadEventFired" for event in self.events):
             self._read(deadline)
 
     def value(self, expression):
-        """Of a JavaScript expression, as JSON."""
-        answer = self.call("Runtime.evaluate", expression=expression, returnByValue=True)
+        """Of a JavaScript expression, as JSON; of a promise what it becomes."""
+        answer = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in answer:
             raise RuntimeError(answer["exceptionDetails"])
         return answer["result"].get("value")
+
+    def press(self, key, text=""):
+        """As a person would, on what has the focus."""
+        code = {"Enter": 13, "Escape": 27, "Tab": 9}.get(key, 0)
+        for kind in ("keyDown", "keyUp"):
+            self.call("Input.dispatchKeyEvent", type=kind, key=key, windowsVirtualKeyCode=code,
+                      **({"text": text or key} if kind == "keyDown" and len(text or key) == 1 else {}))
+
+    def screenshot(self, path):
+        path.write_bytes(base64.b64decode(self.call("Page.captureScreenshot")["data"]))
+
+    def renderer_bytes(self):
+        """Resident memory of the process that shows the page, the largest of them."""
+        most = 0
+        for folder in pathlib.Path("/proc").iterdir():
+            try:
+                words = (folder / "cmdline").read_bytes().split(b"\0")
+                if b"--type=renderer" in words and os.getpgid(int(folder.name)) == self._process.pid:
+                    most = max(most, int((folder / "statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE"))
+            except (OSError, ValueError):
+                continue
+        return most
 
     def seen(self, *methods):
         return [event["params"] for event in self.events if event["method"] in methods]

@@ -71,6 +71,8 @@ class ToneCurve {
 /// bytes.
 std::vector<std::byte> encode_png(const BytePicture& picture);
 std::vector<std::byte> encode_png(const DeepPicture& picture);
+/// JPEG of 4:2:0 colours, no metadata; `quality` is libjpeg's, 1 to 100. For looking at, never for data.
+std::vector<std::byte> encode_jpeg(const BytePicture& picture, int quality);
 std::vector<std::byte> encode_exr(const FloatPicture& picture, bool as_half);
 /// A film as EXR: float32 R, G, B, ZIP; exact, with the count of rejected samples as an attribute.
 std::vector<std::byte> encode_film_exr(const Film& film);

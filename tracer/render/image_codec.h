@@ -20,6 +20,7 @@ struct ImageCodec {
                                const std::string& name, Halves halves);
   std::vector<std::byte> (*encode_png)(const BytePicture& picture);
   std::vector<std::byte> (*encode_deep_png)(const DeepPicture& picture);
+  std::vector<std::byte> (*encode_jpeg)(const BytePicture& picture, int quality);
   std::vector<std::byte> (*encode_exr)(const FloatPicture& picture, bool as_half);
   std::vector<std::byte> (*encode_film_exr)(const Film& film);
   Film (*decode_film_exr)(const std::vector<std::byte>& bytes, const std::string& format,

@@ -218,6 +218,15 @@ std::vector<std::byte> deep_png(const DeepPicture& picture) {
                 std::as_bytes(std::span(picture.pixels)));
 }
 
+std::vector<std::byte> jpeg(const BytePicture& picture, int quality) {
+  DS_ASSERT(picture.channels == 1 || picture.channels == 3);
+  OIIO::ImageSpec spec(picture.width, picture.height, picture.channels, OIIO::TypeDesc::UINT8);
+  DS_ASSERT(picture.pixels.size() == spec.image_bytes());
+  spec.attribute("compression", fmt::format("jpeg:{}", quality));
+  spec.attribute("jpeg:subsampling", "4:2:0");
+  return encode("jpg", spec, picture.pixels.data());
+}
+
 std::vector<std::byte> float_exr(const FloatPicture& picture, bool as_half) {
   OIIO::ImageSpec spec = exr_spec(picture.width, picture.height, picture.channels);
   DS_ASSERT(picture.values.size() * sizeof(float) == spec.image_bytes());
@@ -263,7 +272,8 @@ Film film_of_exr(const std::vector<std::byte>& bytes, const std::string& format,
 }  // namespace
 
 extern "C" const ImageCodec* dsbuild_image_codec() {
-  static constexpr ImageCodec codec{decode_bytes, png, deep_png, float_exr, film_exr, film_of_exr};
+  static constexpr ImageCodec codec{decode_bytes, png,      deep_png,   jpeg,
+                                    float_exr,    film_exr, film_of_exr};
   return &codec;
 }
 

@@ -63,6 +63,11 @@ std::vector<std::byte> encode_png(const DeepPicture& picture) {
   return codec().encode_deep_png(picture);
 }
 
+std::vector<std::byte> encode_jpeg(const BytePicture& picture, int quality) {
+  DS_ASSERT(quality >= 1 && quality <= 100);
+  return codec().encode_jpeg(picture, quality);
+}
+
 std::vector<std::byte> encode_exr(const FloatPicture& picture, bool as_half) {
   return codec().encode_exr(picture, as_half);
 }

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "manifests/gallery/gallery.h"
+
+#include "manifests/gallery/gallery_data.h"
+#include "manifests/gallery/gallery_page.h"
+#include "manifests/gallery/made_files.h"
+#include "manifests/whole_folder.h"
+#include "tracer/base/error.h"
+#include "tracer/base/files.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <system_error>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* k_images = "manifest/images.jsonl";
+/// A browser's request for one file; what is written at the end, in one wait for the disk.
+constexpr const char* k_page = "index.html";
+
+/// As it is under all links, where that can be told.
+fs::path place_of(const fs::path& path) {
+  std::error_code error;
+  const fs::path real = fs::weakly_canonical(path, error);
+  return error ? fs::absolute(path).lexically_normal() : real;
+}
+
+void check_request(const GalleryRequest& request) {
+  std::error_code error;
+  if (!fs::is_regular_file(request.folder / k_images, error))
+    fail(ErrorKind::usage,
+         "{}: wanted the folder of a dataset that dsbuild built, found no {} in it",
+         request.folder.string(), k_images);
+  // What a build, an export or verify take for theirs.
+  const std::string inside =
+      place_of(request.to).lexically_relative(place_of(request.folder)).generic_string();
+  for (const std::string_view own : {"images", "manifest", ".dsbuild"})
+    if (inside == own || inside.starts_with(std::string(own) + "/"))
+      fail(ErrorKind::usage, "-o {}: wanted a folder outside the dataset's own {}",
+           request.to.string(), own);
+}
+
+/// The same lines that the records come from.
+std::vector<std::string> lines_of(const fs::path& file) {
+  std::vector<std::string> lines;
+  const std::string text = read_text_file(file);
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    lines.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return lines;
+}
+
+nlohmann::json conventions_of(const fs::path& folder) {
+  const nlohmann::json dataset =
+      nlohmann::json::parse(read_text_file(folder / "manifest/dataset.json"));
+  const auto at = dataset.find("conventions");
+  return at == dataset.end() ? nlohmann::json::object() : *at;
+}
+
+/// Why nobody sees some of the pictures; "" where all are seen.
+std::string broken_text(const std::vector<std::size_t>& broken,
+                        const std::vector<ImageRecord>& images) {
+  if (broken.empty()) return "";
+  return fmt::format(
+      "{} image{} with a file that is missing or not what the manifest says, {}{}; dsbuild verify "
+      "tells more",
+      broken.size(), broken.size() == 1 ? "" : "s", images[broken.front()].id,
+      broken.size() > 1 ? fmt::format(" and {} more", broken.size() - 1) : "");
+}
+
+}  // namespace
+
+GalleryResult write_gallery(const GalleryRequest& request,
+                            const std::function<void(std::uint64_t, std::uint64_t)>& progress,
+                            const std::atomic<bool>& stop) {
+  check_request(request);
+  const std::vector<ImageRecord> images = read_images_manifest(request.folder);
+  const std::vector<std::string> lines = lines_of(request.folder / k_images);
+  if (lines.size() != images.size())
+    fail(ErrorKind::asset, "{}: changed while it was read, as by a build under way",
+         (request.folder / k_images).string());
+  WholeFolder to(request.to, k_gallery_folder);
+  const auto stop_if_asked = [&] {
+    if (stop) fail(ErrorKind::cancelled, "stopped; no gallery is written");
+  };
+  const MadeFiles made = make_gallery_files(request.folder, images, to, [&](std::uint64_t done) {
+    stop_if_asked();
+    progress(done, images.size());
+  });
+  GalleryResult result{images.size(), 0, made.bytes, made.made, made.reused, made.broken.size(),
+                       request.notes};
+  if (const std::string text = broken_text(made.broken, images); !text.empty())
+    result.notes.push_back(text);
+
+  const fs::path folder = place_of(request.folder);
+  const GalleryFacts facts{read_dataset_manifest(request.folder), conventions_of(request.folder),
+                           folder.lexically_relative(to.place()).generic_string(), result.notes};
+  const auto write = [&](const std::string& path, std::string_view text) {
+    stop_if_asked();
+    to.enter(path, hash_text(text));
+    write_file_atomic(to.folder() / path, text);
+    result.bytes += text.size();
+  };
+  write_gallery_data(facts, lines, images, made, write);
+  write(k_page, gallery_page(facts));
+  write(k_gallery_folder.record, made.record.text());
+  result.files = to.files();
+  to.commit();
+  return result;
+}
+
+}  // namespace ds

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "manifests/whole_folder.h"
+
+#include "manifests/manifest.h"
+#include "tracer/base/error.h"
+#include "tracer/base/files.h"
+#include "tracer/base/process_folder.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <stdio.h>
+#include <system_error>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail_rename(const fs::path& to) {
+  fail(ErrorKind::io, "{}: cannot be replaced: {}", to.string(), std::strerror(errno));
+}
+
+/// Where something stands there, both change places.
+void rename_or_exchange(const fs::path& from, const fs::path& to) {
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return;
+  if (errno == EEXIST &&
+      ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0)
+    return;
+  if (errno != EINVAL && errno != ENOSYS) fail_rename(to);
+  // A file system that knows neither: for a moment nothing stands there.
+  std::error_code error;
+  const fs::path aside = from.string() + ".old";
+  if (fs::exists(to, error) && ::rename(to.c_str(), aside.c_str()) != 0) fail_rename(to);
+  if (::rename(from.c_str(), to.c_str()) != 0) fail_rename(to);
+  fs::remove_all(aside, error);
+}
+
+/// Throws where one that is to be replaced holds files that somebody put there.
+void check_own(const fs::path& to, const WholeFolderKind& kind) {
+  const std::map<std::string, Hash128> own = read_checksum_file(to / kind.checksums);
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(to, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string path = entry->path().lexically_relative(to).generic_string();
+    if (!entry->is_directory(error) && path != kind.checksums && !own.contains(path))
+      fail(ErrorKind::usage,
+           "-o {0}: holds {1}, which no {2} put there and a new one would take away; move it, or "
+           "choose another folder",
+           to.string(), path, kind.name);
+  }
+}
+
+}  // namespace
+
+bool is_whole_folder(const fs::path& folder, const WholeFolderKind& kind) {
+  std::error_code error;
+  return fs::exists(folder / kind.record, error);
+}
+
+const WholeFolderKind* whole_folder_kind(const fs::path& folder) {
+  for (const WholeFolderKind* kind : {&k_export_folder, &k_gallery_folder})
+    if (is_whole_folder(folder, *kind)) return kind;
+  return nullptr;
+}
+
+WholeFolder::WholeFolder(const fs::path& to, const WholeFolderKind& kind)
+    : kind_(kind), to_(fs::absolute(to).lexically_normal()) {
+  if (!to_.has_filename()) to_ = to_.parent_path();
+  // What a link leads to is written, and the link stays.
+  std::error_code error;
+  if (const fs::path real = fs::canonical(to_, error); !error) to_ = real;
+  replaces_ = is_whole_folder(to_, kind_);
+  if (fs::exists(to_, error) && !replaces_ &&
+      !(fs::is_directory(to_, error) && fs::is_empty(to_, error)))
+    fail(ErrorKind::usage, "-o {}: is there already and no {} of dsbuild; wanted a new folder",
+         to_.string(), kind_.name);
+  if (replaces_) check_own(to_, kind_);
+  work_.path = make_process_folder(to_.parent_path() / kind_.work);
+  folder_ = work_.path / to_.filename();
+  make_folders(folder_);
+}
+
+WholeFolder::WorkFolder::~WorkFolder() {
+  if (path.empty()) return;
+  std::error_code ignored;
+  fs::remove_all(path, ignored);
+  fs::remove(path.string() + ".lock", ignored);
+  fs::remove(path.parent_path(), ignored);  // where no other process is at work
+}
+
+void WholeFolder::enter(const std::string& path, Hash128 hash) {
+  check_manifest_path(path);
+  if (!checksums_.emplace(path, hash).second)
+    fail(ErrorKind::asset, "two images would be written as {}", path);
+}
+
+void WholeFolder::commit() {
+  std::string sums;
+  for (const auto& [path, hash] : checksums_)
+    sums += fmt::format("{}  {}\n", hash.hex(), path);
+  write_file_atomic(folder_ / kind_.checksums, sums);
+  rename_or_exchange(folder_, to_);
+  sync_folder(to_.parent_path());
+}
+
+}  // namespace ds

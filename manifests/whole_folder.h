@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tracer/base/hash.h"
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace ds {
+
+/// A sort of folder that dsbuild makes as a whole.
+struct WholeFolderKind {
+  const char* name;       ///< "export": what messages call it
+  const char* work;       ///< folder beside it in which it is written
+  const char* record;     ///< file in it that tells it from other folders
+  const char* checksums;  ///< file in it: checksums of all others, as in a dataset's manifest
+};
+
+/// Of `dsbuild export` and `dsbuild gallery`.
+inline constexpr WholeFolderKind k_export_folder{
+    "export", ".dsbuild-export", ".dsbuild-export/export.json", ".dsbuild-export/checksums.xxh128"};
+inline constexpr WholeFolderKind k_gallery_folder{"gallery", ".dsbuild-gallery",
+                                                  ".dsbuild-gallery/made.txt",
+                                                  ".dsbuild-gallery/checksums.xxh128"};
+
+/// Whether such a folder stands there.
+bool is_whole_folder(const std::filesystem::path& folder, const WholeFolderKind& kind);
+/// Which sort stands there; null where none does.
+const WholeFolderKind* whole_folder_kind(const std::filesystem::path& folder);
+
+/// A folder that is there whole or not at all. It is written beside its place, and takes it in `commit`;
+/// of a process that was killed the next one for that parent removes what it left. Paths are relative
+/// to the folder. All functions throw Error(io).
+class WholeFolder {
+ public:
+  /// Throws Error(usage) where `to` is there and no such folder, or holds what none of these put there.
+  WholeFolder(const std::filesystem::path& to, const WholeFolderKind& kind);
+  WholeFolder(const WholeFolder&) = delete;
+  WholeFolder& operator=(const WholeFolder&) = delete;
+
+  /// Where its files are to be written.
+  const std::filesystem::path& folder() const { return folder_; }
+  /// Where it will stand, and one that it replaces stands; of a link what that leads to.
+  const std::filesystem::path& place() const { return to_; }
+  bool replaces() const { return replaces_; }
+
+  /// A file that is written, or will be before `commit`. Error(asset) for a second one of that path.
+  void enter(const std::string& path, Hash128 hash);
+  std::size_t files() const { return checksums_.size(); }
+  /// Writes the checksums; replaces the folder that stands there.
+  void commit();
+
+ private:
+  /// Removed with all that is in it, also where making the rest fails.
+  struct WorkFolder {
+    std::filesystem::path path;
+    ~WorkFolder();
+  };
+
+  WholeFolderKind kind_;
+  WorkFolder work_;
+  std::filesystem::path to_, folder_;
+  bool replaces_ = false;
+  std::map<std::string, Hash128> checksums_;
+};
+
+}  // namespace ds
