@@ -5,6 +5,7 @@
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
 #include "tracer/base/process_folder.h"
+#include "tracer/base/temporary_file.h"
 
 #include <cerrno>
 #include <cstring>
@@ -93,6 +94,16 @@ void WholeFolder::enter(const std::string& path, Hash128 hash) {
   check_manifest_path(path);
   if (!checksums_.emplace(path, hash).second)
     fail(ErrorKind::asset, "two images would be written as {}", path);
+}
+
+void WholeFolder::write(const std::string& path, std::span<const std::byte> bytes) {
+  const fs::path file = folder_ / path;
+  const Hash128 hash = hash_bytes(bytes);
+  enter(path, hash);
+  if (folders_.insert(file.parent_path()).second) make_folders(file.parent_path());
+  Descriptor descriptor(file, k_write_new);
+  descriptor.write(bytes);
+  descriptor.close();
 }
 
 void WholeFolder::commit() {

@@ -3,8 +3,11 @@
 
 #include "tracer/base/hash.h"
 
+#include <cstddef>
 #include <filesystem>
 #include <map>
+#include <set>
+#include <span>
 #include <string>
 
 namespace ds {
@@ -47,6 +50,9 @@ class WholeFolder {
 
   /// A file that is written, or will be before `commit`. Error(asset) for a second one of that path.
   void enter(const std::string& path, Hash128 hash);
+  /// Writes one, and enters it. It waits for no disk: a power cut may tear it, which its checksum
+  /// tells. For what can be made again.
+  void write(const std::string& path, std::span<const std::byte> bytes);
   std::size_t files() const { return checksums_.size(); }
   /// Writes the checksums; replaces the folder that stands there.
   void commit();
@@ -63,6 +69,7 @@ class WholeFolder {
   std::filesystem::path to_, folder_;
   bool replaces_ = false;
   std::map<std::string, Hash128> checksums_;
+  std::set<std::filesystem::path> folders_;  ///< that `write` has made
 };
 
 }  // namespace ds

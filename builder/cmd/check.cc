@@ -40,9 +40,7 @@ void print(const CheckFinding& finding) {
 int run_check(const Arguments& arguments) {
   const std::filesystem::path folder = dataset_folder(arguments.request());
   const CheckInput input{read_dataset_manifest(folder), read_images_manifest(folder)};
-  std::vector<CheckFinding> findings = run_checks(input, arguments.only);
-  std::stable_sort(findings.begin(), findings.end(),
-                   [](const auto& a, const auto& b) { return a.level > b.level; });
+  const std::vector<CheckFinding> findings = worst_first(run_checks(input, arguments.only));
   const auto count = [&](CheckLevel level) {
     return std::count_if(findings.begin(), findings.end(),
                          [&](const CheckFinding& finding) { return finding.level == level; });

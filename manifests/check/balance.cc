@@ -54,10 +54,17 @@ void check_balance(const CheckInput& input, CheckReport& report) {
       single.push_back(fmt::format("{} ({})", path, by_split.begin()->first));
   for (const auto& [path, of] : models)
     if (of.size() == 1) lonely.push_back(path);
+  const auto of_classes = [&](const auto& is) {
+    return ids_where(input.images, [&](const ImageRecord& image) {
+      return !image.class_path.empty() && is(image.class_path);
+    });
+  };
   report.add(CheckLevel::error, "classes have images in one split only", single, counts.size(),
-             "they cannot be learned and tested both");
+             "they cannot be learned and tested both",
+             of_classes([&](const std::string& path) { return counts.at(path).size() == 1; }));
   report.add(CheckLevel::warning, "classes have a single model: it is learned by heart", lonely,
-             models.size());
+             models.size(), "",
+             of_classes([&](const std::string& path) { return models.at(path).size() == 1; }));
 }
 
 }  // namespace

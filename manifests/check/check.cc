@@ -26,7 +26,8 @@ std::string_view name_of(CheckLevel level) {
 }
 
 void CheckReport::add(CheckLevel level, std::string what, const std::vector<std::string>& found,
-                      std::uint64_t of, std::string advice) {
+                      std::uint64_t of, std::string advice,
+                      std::optional<std::vector<std::string>> images) {
   if (found.empty()) return;
   const auto shown = static_cast<std::ptrdiff_t>(std::min(found.size(), k_check_examples));
   findings_.push_back({check_,
@@ -35,17 +36,24 @@ void CheckReport::add(CheckLevel level, std::string what, const std::vector<std:
                        found.size(),
                        of,
                        {found.begin(), found.begin() + shown},
-                       std::move(advice)});
+                       std::move(advice),
+                       images ? std::move(*images) : found});
 }
 
 void CheckReport::say(CheckLevel level, std::string what, std::string advice) {
-  findings_.push_back({check_, level, std::move(what), 0, 0, {}, std::move(advice)});
+  findings_.push_back({check_, level, std::move(what), 0, 0, {}, std::move(advice), {}});
 }
 
 std::span<const Check> checks() {
 #define DS_CHECK_ROW(NAME) NAME##_check(),
   static const std::vector<Check> rows = {DS_ALL_CHECKS(DS_CHECK_ROW)};
   return rows;
+}
+
+std::vector<CheckFinding> worst_first(std::vector<CheckFinding> findings) {
+  std::stable_sort(findings.begin(), findings.end(),
+                   [](const auto& a, const auto& b) { return a.level > b.level; });
+  return findings;
 }
 
 std::vector<CheckFinding> run_checks(const CheckInput& input,

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,6 +28,8 @@ struct CheckFinding {
   std::uint64_t count = 0, of = 0;
   std::vector<std::string> examples{};
   std::string advice{};  ///< what mends it; may be empty
+  /// Ids of all images it is about, ordered as the manifest; none where it is about the dataset.
+  std::vector<std::string> images{};
 };
 inline constexpr std::size_t k_check_examples = 3;
 
@@ -42,8 +45,10 @@ class CheckReport {
   explicit CheckReport(std::string check) : check_(std::move(check)) {}
 
   /// Things that were looked at one by one, of which `found` are concerned; nothing where none is.
+  /// `images`: ids of the images that have to do with it, where `found` are no ids.
   void add(CheckLevel level, std::string what, const std::vector<std::string>& found,
-           std::uint64_t of, std::string advice = "");
+           std::uint64_t of, std::string advice = "",
+           std::optional<std::vector<std::string>> images = std::nullopt);
   /// Something about the dataset as a whole.
   void say(CheckLevel level, std::string what, std::string advice = "");
 
@@ -67,6 +72,9 @@ std::span<const Check> checks();
 /// Runs all of them, or those named. Error(usage) for a name that is none.
 std::vector<CheckFinding> run_checks(const CheckInput& input,
                                      const std::vector<std::string>& names);
+
+/// Errors, warnings, notes; else in the order they have.
+std::vector<CheckFinding> worst_first(std::vector<CheckFinding> findings);
 
 /// "mug.ply/3" of those images for which `is` holds.
 template <typename Is>

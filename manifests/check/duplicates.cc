@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace ds {
 namespace {
@@ -18,17 +19,27 @@ void check_duplicates(const CheckInput& input, CheckReport& report) {
         ++pictures;
       }
   std::vector<std::string> within, across;
+  std::set<Hash128> in_one, in_several;
   for (const auto& [pixels, images] : same) {
     if (images.size() < 2) continue;
     const bool one_split = std::all_of(images.begin(), images.end(), [&](const ImageRecord* image) {
       return image->split == images[0]->split;
     });
+    (one_split ? in_one : in_several).insert(pixels);
     for (std::size_t i = 1; i < images.size(); ++i)
       (one_split ? within : across).push_back(images[i]->id + " as " + images[0]->id);
   }
+  const auto of = [&](const std::set<Hash128>& wanted) {
+    return ids_where(input.images, [&](const ImageRecord& image) {
+      return std::any_of(image.files.begin(), image.files.end(), [&](const FileRecord& file) {
+        return file.kind == "image" && wanted.contains(file.pixels);
+      });
+    });
+  };
   report.add(CheckLevel::error, "pictures have the pixels of one in another split", across,
-             pictures, "what is tested was seen in training");
-  report.add(CheckLevel::warning, "pictures have the pixels of another", within, pictures);
+             pictures, "what is tested was seen in training", of(in_several));
+  report.add(CheckLevel::warning, "pictures have the pixels of another", within, pictures, "",
+             of(in_one));
 }
 
 }  // namespace

@@ -48,7 +48,10 @@ void check_leaks(const CheckInput& input, CheckReport& report) {
     same.push_back(names);
   }
   report.add(CheckLevel::error, "models are the same mesh in two splits", same, geometries.size(),
-             "keep all copies of a model in one split");
+             "keep all copies of a model in one split",
+             ids_where(input.images, [&](const ImageRecord& image) {
+               return geometries.at(image.parts[0]).size() > 1;
+             }));
   check_shared(input, report, "materials", &ImageRecord::material);
   check_shared(input, report, "environments", &ImageRecord::environment);
   check_shared(input, report, "views", &ImageRecord::view);

@@ -29,9 +29,9 @@ void check_licences(const CheckInput& input, CheckReport& report) {
     report.say(CheckLevel::warning, "no licence stands beside any model or scene",
                "a LICENSE file in their folders");
   report.add(CheckLevel::note, "models and scenes have a licence that is no text of SPDX", unnamed,
-             licensed.size());
+             licensed.size(), "", std::vector<std::string>());
   report.add(CheckLevel::note, "licences allow not every use, or want the same of what is made",
-             limited, input.dataset.licences.size());
+             limited, input.dataset.licences.size(), "", std::vector<std::string>());
 }
 
 }  // namespace

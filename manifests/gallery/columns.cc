@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr std::string_view k_draw = "draw.";
+constexpr std::string_view k_draw = "draw.", k_classes = "classes.";
 
 struct Known {
   std::string_view key, label, unit;
@@ -91,6 +91,18 @@ std::optional<Matrix> matrix_of(const json& line, const char* key) {
   return matrix;
 }
 
+/// Of the model's box in the world; its origin where nobody knows.
+std::array<double, 3> model_middle(const json& line) {
+  std::array<double, 3> middle{};
+  const auto box = line.find("box_m");
+  if (box == line.end() || !box->is_array() || box->size() != 2) return middle;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (const json& corner : *box)
+      if (corner.is_array() && corner.size() == 3 && corner[i].is_number())
+        middle[i] += corner[i].get<double>() / 2;
+  return middle;
+}
+
 }  // namespace
 
 std::string short_json_number(double value) {
@@ -106,7 +118,8 @@ GalleryColumn& GalleryColumns::column(const std::string& key, GalleryColumn::Typ
     column.type = type;
     const auto* const known = std::find_if(k_known.begin(), k_known.end(),
                                            [&](const Known& row) { return row.key == key; });
-    column.label = known == k_known.end() ? key.substr(k_draw.size()) : known->label;
+    // Of draws and of further classes the name behind the point.
+    column.label = known == k_known.end() ? key.substr(key.find('.') + 1) : known->label;
     column.unit = known == k_known.end() ? "" : known->unit;
   }
   if (column.type == GalleryColumn::Type::list)
@@ -146,9 +159,9 @@ void GalleryColumns::add_camera(const json& line) {
   number("azimuth", tenths(degrees(std::atan2(back[1], back[0]))));
   number("elevation", tenths(degrees(std::asin(std::clamp(back[2], -1.0, 1.0)))));
   std::array<double, 3> from{m[0][3], m[1][3], m[2][3]};
-  if (const std::optional<Matrix> model = matrix_of(line, "model_to_world"))
-    for (std::size_t i = 0; i < 3; ++i)
-      from[i] -= (*model)[i][3];
+  const std::array<double, 3> middle = model_middle(line);
+  for (std::size_t i = 0; i < 3; ++i)
+    from[i] -= middle[i];
   number("distance", std::sqrt(from[0] * from[0] + from[1] * from[1] + from[2] * from[2]));
 }
 
@@ -173,6 +186,9 @@ void GalleryColumns::add(const json& line, const ImageExtras& extras) {
   list("class", text_of(line, "class_path"));
   for (const char* key : {"split", "model", "material", "environment", "view"})
     list(key, text_of(line, key));
+  if (const auto others = line.find("classes"); others != line.end() && others->is_object())
+    for (const auto& [name, path] : others->items())
+      if (path.is_string()) list(std::string(k_classes) + name, path.get<std::string>());
   const double width = number_of(line, "width").value_or(0),
                height = number_of(line, "height").value_or(0);
   const double pixels = width * height;
@@ -222,11 +238,16 @@ std::vector<GalleryColumn> GalleryColumns::take() && {
                       (column.values.size() == 1 && !column.values[0].empty());
     if (says) columns.push_back(std::move(column));
   };
-  for (const Known& known : k_known)
-    if (const auto at = columns_.find(std::string(known.key)); at != columns_.end())
-      keep(at->second);
-  for (auto& [key, column] : columns_)
-    if (key.starts_with(k_draw)) keep(column);
+  const auto keep_all = [&](std::string_view prefix) {
+    for (auto& [key, column] : columns_)
+      if (key.starts_with(prefix)) keep(column);
+  };
+  for (const Known& known : k_known) {
+    const auto at = columns_.find(std::string(known.key));
+    if (at != columns_.end()) keep(at->second);
+    if (known.key == "class") keep_all(k_classes);
+  }
+  keep_all(k_draw);
   return columns;
 }
 

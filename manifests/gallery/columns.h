@@ -35,8 +35,8 @@ struct GalleryColumn {
 class GalleryColumns {
  public:
   /// `line`: an image of images.jsonl. Fields that a newer dsbuild adds are taken where they are
-  /// known here: "truncation", "occlusion", "visible_fraction", "draws" (an object of numbers and
-  /// texts), "model_to_world".
+  /// known here: "classes" (an object of texts), "truncation", "occlusion", "visible_fraction", "draws"
+  /// (an object of numbers and texts), "box_m".
   void add(const nlohmann::json& line, const ImageExtras& extras);
   /// Those that hold anything, in the order they are shown.
   std::vector<GalleryColumn> take() &&;

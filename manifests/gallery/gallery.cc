@@ -19,7 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* k_images = "manifest/images.jsonl";
-/// A browser's request for one file; what is written at the end, in one wait for the disk.
 constexpr const char* k_page = "index.html";
 
 /// As it is under all links, where that can be told.
@@ -80,7 +79,9 @@ GalleryResult write_gallery(const GalleryRequest& request,
                             const std::function<void(std::uint64_t, std::uint64_t)>& progress,
                             const std::atomic<bool>& stop) {
   check_request(request);
-  const std::vector<ImageRecord> images = read_images_manifest(request.folder);
+  const CheckInput input{read_dataset_manifest(request.folder),
+                         read_images_manifest(request.folder)};
+  const std::vector<ImageRecord>& images = input.images;
   const std::vector<std::string> lines = lines_of(request.folder / k_images);
   if (lines.size() != images.size())
     fail(ErrorKind::asset, "{}: changed while it was read, as by a build under way",
@@ -99,12 +100,12 @@ GalleryResult write_gallery(const GalleryRequest& request,
     result.notes.push_back(text);
 
   const fs::path folder = place_of(request.folder);
-  const GalleryFacts facts{read_dataset_manifest(request.folder), conventions_of(request.folder),
-                           folder.lexically_relative(to.place()).generic_string(), result.notes};
+  const GalleryFacts facts{input.dataset, conventions_of(request.folder),
+                           folder.lexically_relative(to.place()).generic_string(), result.notes,
+                           worst_first(run_checks(input, {}))};
   const auto write = [&](const std::string& path, std::string_view text) {
     stop_if_asked();
-    to.enter(path, hash_text(text));
-    write_file_atomic(to.folder() / path, text);
+    to.write(path, bytes_of(text));
     result.bytes += text.size();
   };
   write_gallery_data(facts, lines, images, made, write);

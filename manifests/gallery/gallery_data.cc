@@ -101,6 +101,43 @@ json odd_paths(const std::vector<ImageRecord>& images, const std::map<std::strin
   return paths;
 }
 
+/// First and count of each run of images that follow each other.
+json runs_of(const std::vector<std::string>& ids,
+             const std::map<std::string_view, std::size_t>& places) {
+  std::set<std::size_t> images;
+  for (const std::string& id : ids)
+    if (const auto at = places.find(id); at != places.end()) images.insert(at->second);
+  json runs = json::array();
+  std::size_t next = 0, count = 0;
+  for (const std::size_t image : images) {
+    if (count > 0 && image == next) {
+      runs.back() = ++count;
+    } else {
+      runs.push_back(image);
+      runs.push_back(count = 1);
+    }
+    next = image + 1;
+  }
+  return runs;
+}
+
+json checks_of(const std::vector<CheckFinding>& findings, const std::vector<ImageRecord>& images) {
+  std::map<std::string_view, std::size_t> places;
+  for (std::size_t i = 0; i < images.size(); ++i)
+    places.emplace(images[i].id, i);
+  json list = json::array();
+  for (const CheckFinding& finding : findings)
+    list.push_back({{"check", finding.check},
+                    {"level", name_of(finding.level)},
+                    {"what", finding.what},
+                    {"count", finding.count},
+                    {"of", finding.of},
+                    {"advice", finding.advice},
+                    {"examples", finding.examples},
+                    {"images", runs_of(finding.images, places)}});
+  return list;
+}
+
 void write_grid(const std::vector<ImageRecord>& images, const std::vector<GalleryColumn>& columns,
                 const std::map<std::string, Kind>& kinds, const MadeFiles& made, std::size_t chunk,
                 const Write& write) {
@@ -160,7 +197,7 @@ void write_gallery_data(const GalleryFacts& facts, const std::vector<std::string
             {"kinds", json::array()},
             {"counts", json::object()},
             {"conventions", facts.conventions},
-            {"checks", json::array()},
+            {"checks", checks_of(facts.findings, images)},
             {"broken", made.broken},
             {"notes", facts.notes},
             {"recipe", facts.dataset.recipe_text}};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "manifests/check/check.h"
 #include "manifests/gallery/made_files.h"
 #include "manifests/manifest.h"
 
@@ -25,6 +26,7 @@ struct GalleryFacts {
   nlohmann::json conventions;  ///< as dataset.json has them
   std::string root;            ///< of the dataset, seen from the gallery: ".."
   std::vector<std::string> notes;
+  std::vector<CheckFinding> findings;  ///< of `dsbuild check`, the worst first
 };
 
 /// Writes data/*.js. `lines`: of images.jsonl; `write` takes a path and its text.

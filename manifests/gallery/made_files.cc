@@ -4,11 +4,11 @@
 #include "manifests/export/exporter.h"
 #include "manifests/gallery/previews.h"
 #include "tracer/base/error.h"
-#include "tracer/base/file_batch.h"
 #include "tracer/base/files.h"
 #include "tracer/base/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int k_thumbnail_pixels = 128, k_preview_pixels = 256, k_jpeg_quality = 80;
-/// Images made before their files are written: what waits in memory, and one wait for the disk.
+/// Images made before their files are written: what waits in memory.
 constexpr std::size_t k_images_at_once = 512;
 constexpr std::string_view k_thumbnail = "thumbnail", k_box = "box";
 
@@ -89,6 +89,16 @@ bool is_shown_by_browsers(const FileRecord& file) {
          (file.kind == "image" || file.kind == "mask" || file.kind == "amodal_mask");
 }
 
+/// As the manifest has it; nothing where an older dsbuild wrote that.
+std::optional<std::array<int, 4>> counted_box(const ImageRecord& image) {
+  const PixelCounts& counts = image.pixel_counts;
+  if (!counts.left || !counts.right || !counts.above || !counts.below || counts.model == 0U)
+    return std::nullopt;
+  const int left = static_cast<int>(*counts.left), above = static_cast<int>(*counts.above);
+  return std::array{left, above, image.width - left - static_cast<int>(*counts.right),
+                    image.height - above - static_cast<int>(*counts.below)};
+}
+
 std::vector<Task> tasks_of(std::size_t index, const ImageRecord& image) {
   std::vector<Task> tasks;
   if (image.files.empty()) return tasks;
@@ -98,7 +108,8 @@ std::vector<Task> tasks_of(std::size_t index, const ImageRecord& image) {
   const FileRecord& shown = picture == image.files.end() ? image.files.front() : *picture;
   tasks.push_back({index, std::string(k_thumbnail), &shown, "t/" + stem + ".jpg"});
   for (const FileRecord& file : image.files) {
-    if (file.kind == "mask") tasks.push_back({index, std::string(k_box), &file, ""});
+    if (file.kind == "mask" && !image.pixel_counts.left)
+      tasks.push_back({index, std::string(k_box), &file, ""});
     if (!is_shown_by_browsers(file))
       tasks.push_back({index, file.kind, &file, fmt::format("p/{}.{}.jpg", stem, file.kind)});
   }
@@ -119,10 +130,12 @@ class Maker {
       for (std::size_t i = begin; i < end; ++i)
         done[i] = one(tasks[i]);
     });
-    FileBatch batch;
     for (std::size_t i = 0; i < tasks.size(); ++i)
-      keep(tasks[i], done[i], batch);
-    batch.commit();
+      keep(tasks[i], done[i]);
+  }
+
+  void set_box(std::size_t image, const std::optional<std::array<int, 4>>& box) {
+    result_.extras[image].box = box;
   }
 
   MadeFiles take() && { return std::move(result_); }
@@ -140,7 +153,7 @@ class Maker {
     }
   }
 
-  void keep(const Task& task, const Done& done, FileBatch& batch) {
+  void keep(const Task& task, const Done& done) {
     if (done.broken) {
       auto& broken = result_.broken;
       if (broken.empty() || broken.back() != task.image) broken.push_back(task.image);
@@ -158,8 +171,7 @@ class Maker {
     MadeRecord::Row row{{}, task.path, done.facts};
     if (!task.path.empty()) {
       row.hash = hash_bytes(done.file);
-      to_.enter(task.path, row.hash);
-      batch.write(to_.folder() / task.path, done.file);
+      to_.write(task.path, done.file);
       result_.bytes += done.file.size();
       ++(done.reused ? result_.reused : result_.made);
       if (task.use != k_thumbnail) result_.previews[task.image].push_back(task.use);
@@ -185,9 +197,11 @@ MadeFiles make_gallery_files(const fs::path& dataset, const std::vector<ImageRec
   for (std::size_t begin = 0; begin < images.size(); begin += k_images_at_once) {
     const std::size_t end = std::min(begin + k_images_at_once, images.size());
     std::vector<Task> tasks;
-    for (std::size_t i = begin; i < end; ++i)
+    for (std::size_t i = begin; i < end; ++i) {
+      maker.set_box(i, counted_box(images[i]));
       for (Task& task : tasks_of(i, images[i]))
         tasks.push_back(std::move(task));
+    }
     maker.run(tasks);
     done(end);
   }

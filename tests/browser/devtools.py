@@ -125,14 +125,24 @@ class Browser:
 
     def renderer_bytes(self):
         """Resident memory of the process that shows the page, the largest of them."""
-        most = 0
+        parents, renderers = {}, []
         for folder in pathlib.Path("/proc").iterdir():
             try:
-                words = (folder / "cmdline").read_bytes().split(b"\0")
-                if b"--type=renderer" in words and os.getpgid(int(folder.name)) == self._process.pid:
-                    most = max(most, int((folder / "statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE"))
+                # Behind the name, which may hold anything in its brackets: state, parent.
+                parents[int(folder.name)] = int((folder / "stat").read_text().rsplit(")", 1)[1].split()[1])
+                if b"--type=renderer" in (folder / "cmdline").read_bytes():
+                    renderers.append(int(folder.name))
             except (OSError, ValueError):
                 continue
+
+        def is_own(process):
+            while process > 1 and process != self._process.pid:
+                process = parents.get(process, 0)
+            return process == self._process.pid
+
+        most = 0
+        for process in filter(is_own, renderers):
+            most = max(most, int(pathlib.Path(f"/proc/{process}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE"))
         return most
 
     def seen(self, *methods):

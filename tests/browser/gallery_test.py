@@ -230,6 +230,51 @@ class GalleryPage(unittest.TestCase):
         self.assertEqual((len(self.shown()), self.value("hashOf()")), (IMAGES, ""))
         self.assert_quiet()
 
+    def test_findings_are_filters(self):
+        """Every picture is that of five images: the check of duplicates says so of all, and names them."""
+        self.open()
+        findings = self.value("data.meta.checks.map(c => [c.check, c.level, c.count])")
+        at = next(k for k, (check, _, _) in enumerate(findings) if check == "duplicates")
+        pixels = [next(file["pixels_xxh128"] for file in line["files"] if file["kind"] == "image") for line in self.sets["some"]]
+        self.assertEqual(findings[at][1:], ["error", IMAGES - len(set(pixels))])
+        self.value(f"document.querySelector('[data-finding=\"{at}\"]').click()")
+        self.assertEqual(self.shown(), [line["id"] for line, own in zip(self.sets["some"], pixels) if pixels.count(own) > 1])
+        self.assertEqual(self.value("location.hash"), f"#check={at}")
+        self.assertEqual(self.value(f"document.querySelector('[data-finding=\"{at}\"]').ariaPressed"), "true")
+
+    def test_the_box_in_space_is_where_the_model_is(self):
+        """A corner of the model's box, by the line's own matrices, against what is drawn."""
+        self.open(hash="i=0")
+        self.wait("document.querySelector('#facts table')")
+        line = self.sets["some"][0]
+        if "model_box" not in line:
+            self.skipTest("the manifest has no poses")
+        self.press("x")
+        to_world, to_camera = line["model_to_world"], line["camera_to_world"]
+        corner = [line["model_box"][0][c] for c in range(3)] + [1]
+        world = [sum(to_world[r][c] * corner[c] for c in range(4)) for r in range(3)]
+        eye = [sum(to_camera[r][c] * (world[r] - to_camera[r][3]) for r in range(3)) for c in range(3)]
+        k = line["intrinsics"]
+        pixel = [k[0][0] * eye[0] / eye[2] + k[0][2], k[1][1] * eye[1] / eye[2] + k[1][2]]
+        drawn = self.value("[...document.querySelectorAll('.layers .box3')].map(path => path.getAttribute('d').match(/-?[\\d.]+/g).map(Number))")
+        self.assertEqual(len(drawn), 12)
+        self.assertAlmostEqual(drawn[0][0], pixel[0], 1)
+        self.assertAlmostEqual(drawn[0][1], pixel[1], 1)
+        # The whole of the model is in its box: so is the mask's box in that of the corners.
+        xs, ys = [x for edge in drawn for x in edge[::2]], [y for edge in drawn for y in edge[1::2]]
+        x, y, width, height = self.value("[...boxOf(0)]")
+        self.assertLessEqual(min(xs), x + 1)
+        self.assertGreaterEqual(max(xs), x + width - 1)
+        self.assertLessEqual(min(ys), y + 1)
+        self.assertGreaterEqual(max(ys), y + height - 1)
+        self.assertEqual(self.value("document.querySelectorAll('.pose .box3').length"), 12)
+        self.assertEqual(self.value("document.querySelectorAll('.layers .axis').length"), 3)
+        before = self.value("document.querySelector('.pose').innerHTML")
+        self.value("document.querySelector('.pose').focus()")
+        self.press("ArrowLeft")
+        self.assertNotEqual(self.value("document.querySelector('.pose').innerHTML"), before)
+        self.assertEqual(self.value("picture.image"), 0, "the arrows turn the view, and no page")
+
     def test_hostile_names(self):
         self.open("hostile")
         lines = self.sets["hostile"]

@@ -111,13 +111,16 @@ function countsOf(column) {
 
 // Least and greatest of a number's column, of all images that are loaded.
 function rangeOf(column) {
+  if (column.range) return column.range;
   let low = Infinity, high = -Infinity;
   for (let i = 0; i < data.n; ++i) {
     const value = column.of[i];
     if (value < low) low = value;
     if (value > high) high = value;
   }
-  return low <= high ? [low, high] : [0, 0];
+  const range = low <= high ? [low, high] : [0, 0];
+  if (!data.chunks.includes(false)) column.range = range;
+  return range;
 }
 
 const BARS = 64;

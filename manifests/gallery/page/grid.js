@@ -39,10 +39,16 @@ function layOut() {
   canvas.style.height = `${grid.tops[grid.rows] + GAP}px`;
   canvas.setAttribute('aria-rowcount', grid.rows);
   canvas.setAttribute('aria-colcount', grid.columns);
-  for (const node of grid.nodes.values()) node.remove();
+  canvas.style.setProperty('--size', `${state.size}px`);
+  for (const node of grid.nodes.values()) putAway(node);
   grid.nodes.clear();
-  grid.spare = [];
   grid.cursor = Math.max(0, Math.min(grid.cursor, shown.order.length - 1));
+}
+
+// Nodes that stay in the document are faster than those that come and go; hidden ones are read by nobody.
+function putAway(node) {
+  node.hidden = true;
+  grid.spare.push(node);
 }
 
 // The last row that begins at `top` or above.
@@ -69,6 +75,7 @@ function rowOf(place) {
 
 function makeCell() {
   const image = el('img', {draggable: false, decoding: 'async'});
+  image.onload = () => image.parentNode.classList.remove('waits');
   image.onerror = () => image.parentNode.classList.add('broken');
   return el('div', {className: 'cell', role: 'gridcell', tabIndex: -1}, image);
 }
@@ -82,7 +89,6 @@ function captionOf(i) {
 
 // Masks and boxes lie over the picture as it lies in its square: as large as fits, in the middle.
 function drawOver(cell, i) {
-  for (const node of cell.querySelectorAll('.over')) node.remove();
   const picture = cell.firstChild;
   if (state.mask && fileOf(i, 'mask')) {
     const mask = el('img', {className: 'over mask', alt: '', src: fileOf(i, 'mask'), draggable: false});
@@ -99,15 +105,15 @@ function drawOver(cell, i) {
 
 function showPicture(cell, i, loads) {
   const picture = cell.firstChild;
+  while (picture.nextSibling && !picture.nextSibling.classList.contains('caption')) picture.nextSibling.remove();
+  // The one before stays, unseen, until this one is there: without any its text would be laid out.
+  cell.classList.add('waits');
+  cell.waits = !loads;
+  if (!loads) return;
   const source = (state.size > 128 && fileOf(i, 'image')) || thumbnail(i);
-  if (!loads) {
-    picture.removeAttribute('src');
-    cell.waits = true;
-    return;
-  }
-  cell.waits = false;
   cell.classList.toggle('broken', data.broken.has(i));
-  picture.src = source;
+  if (picture.getAttribute('src') === source && picture.complete) cell.classList.remove('waits');
+  else picture.src = source;
   drawOver(cell, i);
 }
 
@@ -121,7 +127,6 @@ function fillCell(cell, place, loads) {
   picture.width = picture.height = state.size;
   picture.alt = nameOf(i);
   cell.title = data.ids[i];
-  for (const node of cell.querySelectorAll('.over')) node.remove();
   showPicture(cell, i, loads);
   let caption = cell.querySelector('.caption');
   if (captionHeight() === 0) {
@@ -135,6 +140,7 @@ function fillCell(cell, place, loads) {
 function fillRow(r, loads) {
   const node = grid.spare.pop() || el('div', {className: 'row', role: 'row'});
   const count = grid.counts[r];
+  node.hidden = false;
   node.setAttribute('aria-rowindex', r + 1);
   node.style.transform = `translateY(${grid.tops[r] + GAP / 2}px)`;
   node.classList.toggle('heading', count < 0);
@@ -166,9 +172,7 @@ function drawGrid() {
   for (const [r, node] of grid.nodes)
     if ((r < first || r > last) && r !== pinned) {
       grid.nodes.delete(r);
-      // Nodes that stay in the document are faster than those that come and go.
-      node.style.transform = 'translateY(-9999px)';
-      grid.spare.push(node);
+      putAway(node);
     }
   const rows = [];
   for (let r = first; r <= last; ++r) rows.push(r);

@@ -157,7 +157,7 @@ function pageKey(key) {
   const sizes = [64, 128, 256], at = sizes.indexOf(state.size);
   const acts = {
     '/': () => $('text').focus(), m: () => toggleState('mask'), b: () => toggleState('boxes'), p: () => toggleState('plots'),
-    '+': () => setSize(sizes[Math.min(2, at + 1)]), '-': () => setSize(sizes[Math.max(0, at - 1)]), '?': showHelp,
+    '+': () => setSize(sizes[Math.min(2, at + 1)]), '=': () => setSize(sizes[Math.min(2, at + 1)]), '-': () => setSize(sizes[Math.max(0, at - 1)]), '?': showHelp,
   };
   if (!acts[key]) return false;
   acts[key]();
@@ -166,6 +166,8 @@ function pageKey(key) {
 
 function pictureKey(key) {
   const has = kind => picture.line && (picture.line.previews || []).includes(kind);
+  // Of a picture larger than its place the arrows show the rest.
+  if (key.startsWith('Arrow') && $('stage').scrollWidth > $('stage').clientWidth) return false;
   const normals = ['shading_normal', 'geometry_normal'].find(has), depth = ['depth', 'distance'].find(has);
   const acts = {
     '[': () => stepPicture(-1), ']': () => stepPicture(1), ArrowLeft: () => stepPicture(-1), ArrowRight: () => stepPicture(1), m: () => toggleLook('mask'), b: () => toggleLook('box'), c: () => toggleLook('cut'),

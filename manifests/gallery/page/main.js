@@ -62,8 +62,8 @@ function readHash() {
   }
 }
 
-// After every change of the state. `lay`: only sizes changed, and no filter.
-function changed({lay = false, hash = true} = {}) {
+// After every change of the state. `lay`: only sizes changed, and no filter; `keep`: the view stays where it is.
+function changed({lay = false, hash = true, keep = lay} = {}) {
   if (!lay) {
     applyFilters();
     drawPanel();
@@ -72,12 +72,12 @@ function changed({lay = false, hash = true} = {}) {
   }
   drawTools();
   layOut();
-  if (!lay) {
+  if (!keep) {
     grid.cursor = 0;
     $('view').scrollTop = 0;
   }
-  bringIntoView(grid.cursor);
-  drawGrid();
+  if (keep && !lay) drawGrid();
+  else bringIntoView(grid.cursor);
   const count = shown.order.length, all = data.n;
   $('count').textContent = count === all ? `${all.toLocaleString('en')} image${all === 1 ? '' : 's'}` : `${count.toLocaleString('en')} of ${all.toLocaleString('en')} images`;
   $('none').hidden = count > 0;
@@ -146,15 +146,15 @@ function setUpTools() {
   if (window.innerWidth < 800) $('panel-button').click();
 }
 
-function goToHash() {
+function goToHash({keep = false} = {}) {
   readHash();
   const image = state.image;
-  changed({hash: false});
-  if (image >= 0 && data.ids[image] !== undefined) {
+  changed({hash: false, keep});
+  if (image >= 0 && data.ids[image] !== undefined && image !== picture.image) {
     const place = shown.order.indexOf(image);
     if (place >= 0) moveCursor(place, false);
     openPicture(image);
-  } else if ($('picture').open) {
+  } else if (image < 0 && $('picture').open) {
     $('picture').close();
   }
 }
@@ -168,13 +168,22 @@ function start() {
   setUpGrid();
   setUpPicture();
   setUpKeys();
-  window.addEventListener('hashchange', goToHash);
+  window.addEventListener('hashchange', () => goToHash());
   for (const note of data.meta.notes) complain(note);
-  goToHash();
-  data.chunks.forEach((_, k) => load(`data/grid-${k}.js`, () => data.chunks[k], () => {
+  if (data.n === 0) goToHash();
+  else loadChunk(0, loadRest);
+}
+
+function loadChunk(k, done) {
+  load(`data/grid-${k}.js`, () => data.chunks[k], () => {
     // The first is shown at once, the rest when all are there.
-    if (k === 0 || !data.chunks.includes(false)) goToHash();
-  }));
+    if (k === 0 || !data.chunks.includes(false)) goToHash({keep: k > 0});
+    done();
+  });
+}
+
+function loadRest() {
+  requestAnimationFrame(() => data.chunks.forEach((there, k) => there || loadChunk(k, () => {})));
 }
 
 try { setTheme(localStorage.getItem('dsbuild-theme') || 'system'); } catch { /* as in switchTheme */ }

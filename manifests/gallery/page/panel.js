@@ -125,7 +125,7 @@ function findingsFacet() {
   const list = el('div', {className: 'values'});
   data.meta.checks.forEach((finding, k) => {
     const level = el('i', {className: `level ${finding.level}`, textContent: finding.level});
-    const words = `${finding.check}: ${finding.of > 0 ? `${finding.count} of ${finding.of} ` : ''}${finding.what}${finding.advice ? ` (${finding.advice})` : ''}`;
+    const words = `${finding.check}: ${finding.of > 0 ? `${finding.count} of ${finding.of} ` : ''}${finding.what}${finding.images.length === 0 && finding.examples.length > 0 ? `: ${finding.examples.join(', ')}` : ''}${finding.advice ? ` (${finding.advice})` : ''}`;
     if (finding.images.length === 0) return list.append(el('p', {className: 'finding'}, level, el('span', {textContent: words})));
     const button = el('button', {type: 'button', className: 'finding', 'aria-pressed': false}, level, el('span', {textContent: words}));
     button.dataset.finding = k;

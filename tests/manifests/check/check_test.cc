@@ -94,6 +94,31 @@ TEST(Checks, PicturesOfEqualPixels) {
   EXPECT_THAT(found(input, "duplicates"), Contains(HasSubstr("error: 1/48")));
 }
 
+TEST(Checks, FindingsNameTheirImages) {
+  const auto images = [](const CheckInput& input, const char* check) {
+    std::vector<std::vector<std::string>> all;
+    for (const CheckFinding& finding : run_checks(input, {check}))
+      if (finding.level != CheckLevel::note) all.push_back(finding.images);
+    return all;
+  };
+  CheckInput input = clean();
+  image_of(input, "mug1.ply/1").files[0].pixels = image_of(input, "mug1.ply/0").files[0].pixels;
+  EXPECT_THAT(images(input, "duplicates"), ElementsAre(ElementsAre("mug1.ply/0", "mug1.ply/1")));
+  image_of(input, "car5.ply/1").relative_error = 0.9;
+  EXPECT_THAT(images(input, "errors"), ElementsAre(ElementsAre("car5.ply/1")));
+  for (const char* view : {"0", "1"})
+    image_of(input, std::string("mug5.ply/") + view).parts[0] = hash_text("mug0.ply");
+  EXPECT_THAT(images(input, "leaks"),
+              ElementsAre(ElementsAre("mug0.ply/0", "mug0.ply/1", "mug5.ply/0", "mug5.ply/1")));
+  input.dataset.licences.clear();
+  for (const auto& none : images(input, "licences"))
+    EXPECT_THAT(none, IsEmpty()) << "licences are of no image";
+  std::erase_if(input.images, [](const ImageRecord& image) {
+    return image.class_path == "ship" && image.model != "ship0.ply";
+  });
+  EXPECT_THAT(images(input, "balance"), Contains(ElementsAre("ship0.ply/0", "ship0.ply/1")));
+}
+
 TEST(Checks, MaterialsThatTellTheClass) {
   CheckInput input = clean();
   for (ImageRecord& image : input.images)

@@ -16,6 +16,14 @@ const GalleryColumn* find(const std::vector<GalleryColumn>& columns, const std::
   return nullptr;
 }
 
+/// One that must be there.
+const GalleryColumn& at(const std::vector<GalleryColumn>& columns, const std::string& key) {
+  static const GalleryColumn none;
+  const GalleryColumn* const column = find(columns, key);
+  EXPECT_NE(column, nullptr) << key;
+  return column == nullptr ? none : *column;
+}
+
 /// A camera on the x axis that looks at the origin: right is +y, down is -z, forward is -x.
 json line_at(double x) {
   return {{"id", "m/0"},
@@ -35,12 +43,13 @@ TEST(GalleryColumns, AreWhatTheLineSays) {
   collected.add(line_at(2), {.brightness = 0.5, .contrast = {}, .box = {{50, 0, 100, 50}}});
   json second = line_at(3);
   second["split"] = "test";
-  second["model_to_world"] = {{1, 0, 0, 1}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+  second["box_m"] = {{0.5, -1, -1}, {1.5, 1, 1}};
+  second["classes"]["coarse"] = "solid";
   second["relative_error"] = 0.25;
   collected.add(second, {});
   const std::vector<GalleryColumn> columns = std::move(collected).take();
   const auto number = [&](const char* key, std::size_t image) {
-    return find(columns, key)->numbers.at(image);
+    return at(columns, key).numbers.at(image);
   };
   EXPECT_DOUBLE_EQ(number("azimuth", 0), 0);
   EXPECT_DOUBLE_EQ(number("elevation", 0), 0);
@@ -56,8 +65,10 @@ TEST(GalleryColumns, AreWhatTheLineSays) {
   EXPECT_DOUBLE_EQ(number("error", 1), 0.25);
   EXPECT_EQ(find(columns, "contrast"), nullptr) << "nobody knows it";
   EXPECT_EQ(find(columns, "material"), nullptr) << "no image has one";
-  EXPECT_EQ(find(columns, "split")->values, (std::vector<std::string>{"", "test"}));
-  EXPECT_EQ(find(columns, "class")->texts, (std::vector<std::string>{"a/b", "a/b"}));
+  EXPECT_EQ(at(columns, "split").values, (std::vector<std::string>{"", "test"}));
+  EXPECT_EQ(at(columns, "classes.coarse").label, "coarse");
+  EXPECT_EQ(at(columns, "classes.coarse").texts, (std::vector<std::string>{"", "solid"}));
+  EXPECT_EQ(at(columns, "class").texts, (std::vector<std::string>{"a/b", "a/b"}));
 }
 
 TEST(GalleryColumns, DrawsAreColumns) {
@@ -68,11 +79,11 @@ TEST(GalleryColumns, DrawsAreColumns) {
   line["draws"] = {{"yaw", 13.5}, {"odd", "none"}};
   collected.add(line, {});
   const std::vector<GalleryColumn> columns = std::move(collected).take();
-  EXPECT_EQ(find(columns, "draw.yaw")->numbers, (std::vector<double>{12.5, 13.5}));
-  EXPECT_EQ(find(columns, "draw.yaw")->label, "yaw");
-  EXPECT_EQ(find(columns, "draw.sky")->texts, (std::vector<std::string>{"clear", ""}));
-  EXPECT_DOUBLE_EQ(find(columns, "draw.shift.1")->numbers.at(0), 2);
-  EXPECT_EQ(find(columns, "draw.odd")->texts, (std::vector<std::string>{"3", "none"}));
+  EXPECT_EQ(at(columns, "draw.yaw").numbers, (std::vector<double>{12.5, 13.5}));
+  EXPECT_EQ(at(columns, "draw.yaw").label, "yaw");
+  EXPECT_EQ(at(columns, "draw.sky").texts, (std::vector<std::string>{"clear", ""}));
+  EXPECT_DOUBLE_EQ(at(columns, "draw.shift.1").numbers.at(0), 2);
+  EXPECT_EQ(at(columns, "draw.odd").texts, (std::vector<std::string>{"3", "none"}));
 }
 
 TEST(GalleryColumns, NumbersAreShort) {
