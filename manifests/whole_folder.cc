@@ -65,18 +65,23 @@ const WholeFolderKind* whole_folder_kind(const fs::path& folder) {
   return nullptr;
 }
 
-WholeFolder::WholeFolder(const fs::path& to, const WholeFolderKind& kind)
-    : kind_(kind), to_(fs::absolute(to).lexically_normal()) {
-  if (!to_.has_filename()) to_ = to_.parent_path();
+fs::path checked_place(const fs::path& to, const WholeFolderKind& kind) {
+  fs::path place = fs::absolute(to).lexically_normal();
+  if (!place.has_filename()) place = place.parent_path();
   // What a link leads to is written, and the link stays.
   std::error_code error;
-  if (const fs::path real = fs::canonical(to_, error); !error) to_ = real;
-  replaces_ = is_whole_folder(to_, kind_);
-  if (fs::exists(to_, error) && !replaces_ &&
-      !(fs::is_directory(to_, error) && fs::is_empty(to_, error)))
+  if (const fs::path real = fs::canonical(place, error); !error) place = real;
+  const bool replaces = is_whole_folder(place, kind);
+  if (fs::exists(place, error) && !replaces &&
+      !(fs::is_directory(place, error) && fs::is_empty(place, error)))
     fail(ErrorKind::usage, "-o {}: is there already and no {} of dsbuild; wanted a new folder",
-         to_.string(), kind_.name);
-  if (replaces_) check_own(to_, kind_);
+         place.string(), kind.name);
+  if (replaces) check_own(place, kind);
+  return place;
+}
+
+WholeFolder::WholeFolder(const fs::path& to, const WholeFolderKind& kind)
+    : kind_(kind), to_(checked_place(to, kind)), replaces_(is_whole_folder(to_, kind)) {
   work_.path = make_process_folder(to_.parent_path() / kind_.work);
   folder_ = work_.path / to_.filename();
   make_folders(folder_);
@@ -96,14 +101,26 @@ void WholeFolder::enter(const std::string& path, Hash128 hash) {
     fail(ErrorKind::asset, "two images would be written as {}", path);
 }
 
-void WholeFolder::write(const std::string& path, std::span<const std::byte> bytes) {
-  const fs::path file = folder_ / path;
-  const Hash128 hash = hash_bytes(bytes);
-  enter(path, hash);
+fs::path WholeFolder::new_file(const std::string& path) {
+  fs::path file = folder_ / path;
   if (folders_.insert(file.parent_path()).second) make_folders(file.parent_path());
-  Descriptor descriptor(file, k_write_new);
+  return file;
+}
+
+void WholeFolder::write(const std::string& path, std::span<const std::byte> bytes) {
+  enter(path, hash_bytes(bytes));
+  Descriptor descriptor(new_file(path), k_write_new);
   descriptor.write(bytes);
   descriptor.close();
+}
+
+void WholeFolder::keep(const std::string& path, Hash128 hash, const std::string& before) {
+  std::error_code error;
+  const fs::path file = new_file(path);
+  // The one before goes when this takes its place: nobody writes to both.
+  fs::create_hard_link(to_ / before, file, error);
+  if (!error) return enter(path, hash);
+  write(path, bytes_of(read_text_file(to_ / before)));
 }
 
 void WholeFolder::commit() {

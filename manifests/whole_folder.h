@@ -32,12 +32,16 @@ bool is_whole_folder(const std::filesystem::path& folder, const WholeFolderKind&
 /// Which sort stands there; null where none does.
 const WholeFolderKind* whole_folder_kind(const std::filesystem::path& folder);
 
+/// The folder as it is under all links. Throws Error(usage) where something stands there that may not be
+/// replaced: no such folder, or one that holds what none of these put there.
+std::filesystem::path checked_place(const std::filesystem::path& to, const WholeFolderKind& kind);
+
 /// A folder that is there whole or not at all. It is written beside its place, and takes it in `commit`;
 /// of a process that was killed the next one for that parent removes what it left. Paths are relative
 /// to the folder. All functions throw Error(io).
 class WholeFolder {
  public:
-  /// Throws Error(usage) where `to` is there and no such folder, or holds what none of these put there.
+  /// `to` as checked_place takes it.
   WholeFolder(const std::filesystem::path& to, const WholeFolderKind& kind);
   WholeFolder(const WholeFolder&) = delete;
   WholeFolder& operator=(const WholeFolder&) = delete;
@@ -53,11 +57,15 @@ class WholeFolder {
   /// Writes one, and enters it. It waits for no disk: a power cut may tear it, which its checksum
   /// tells. For what can be made again.
   void write(const std::string& path, std::span<const std::byte> bytes);
+  /// One of the folder that stands there, whose bytes have that hash, under another name or the same.
+  void keep(const std::string& path, Hash128 hash, const std::string& before);
   std::size_t files() const { return checksums_.size(); }
   /// Writes the checksums; replaces the folder that stands there.
   void commit();
 
  private:
+  std::filesystem::path new_file(const std::string& path);
+
   /// Removed with all that is in it, also where making the rest fails.
   struct WorkFolder {
     std::filesystem::path path;
@@ -65,11 +73,12 @@ class WholeFolder {
   };
 
   WholeFolderKind kind_;
-  WorkFolder work_;
-  std::filesystem::path to_, folder_;
+  std::filesystem::path to_;
   bool replaces_ = false;
+  WorkFolder work_;
+  std::filesystem::path folder_;
   std::map<std::string, Hash128> checksums_;
-  std::set<std::filesystem::path> folders_;  ///< that `write` has made
+  std::set<std::filesystem::path> folders_;  ///< that have been made
 };
 
 }  // namespace ds

@@ -7,11 +7,13 @@
 #include "manifests/whole_folder.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
+#include "tracer/base/hash_stream.h"
 
 #include <algorithm>
-#include <array>
+#include <map>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -73,6 +75,48 @@ std::string broken_text(const std::vector<std::size_t>& broken,
       broken.size() > 1 ? fmt::format(" and {} more", broken.size() - 1) : "");
 }
 
+using Files = std::vector<std::pair<std::string, std::string>>;  ///< paths and texts
+
+/// All but thumbnails and previews; `facts.notes` gets what is broken.
+Files texts_of(GalleryFacts& facts, const std::vector<std::string>& lines,
+               const std::vector<ImageRecord>& images, const MadeFiles& made) {
+  if (std::string text = broken_text(made.broken, images); !text.empty())
+    facts.notes.push_back(std::move(text));
+  Files files;
+  write_gallery_data(
+      facts, lines, images, made,
+      [&](const std::string& path, std::string_view text) { files.emplace_back(path, text); });
+  files.emplace_back(k_page, gallery_page(facts));
+  files.emplace_back(k_gallery_folder.record, made.record.text());
+  return files;
+}
+
+/// Whether the gallery at `place` has these and nothing else beside the thumbnails and previews of
+/// `made`, which stand there.
+bool stands(const fs::path& place, const Files& files, const MadeFiles& made) {
+  const std::map<std::string, Hash128> sums =
+      read_checksum_file(place / k_gallery_folder.checksums);
+  if (sums.size() != files.size() + made.reused) return false;
+  return std::all_of(files.begin(), files.end(), [&](const auto& file) {
+    std::error_code error;
+    const auto known = sums.find(file.first);
+    return known != sums.end() && known->second == hash_text(file.second) &&
+           fs::is_regular_file(place / file.first, error) &&
+           content_hash(place / file.first) == known->second;
+  });
+}
+
+GalleryResult result_of(const MadeFiles& made, const Files& files, const GalleryFacts& facts,
+                        std::size_t images) {
+  GalleryResult result{images,      files.size() + made.made + made.reused,
+                       made.bytes,  made.made,
+                       made.reused, made.broken.size(),
+                       facts.notes};
+  for (const auto& [path, text] : files)
+    result.bytes += text.size();
+  return result;
+}
+
 }  // namespace
 
 GalleryResult write_gallery(const GalleryRequest& request,
@@ -86,7 +130,18 @@ GalleryResult write_gallery(const GalleryRequest& request,
   if (lines.size() != images.size())
     fail(ErrorKind::asset, "{}: changed while it was read, as by a build under way",
          (request.folder / k_images).string());
-  WholeFolder to(request.to, k_gallery_folder);
+  const fs::path place = checked_place(request.to, k_gallery_folder);
+  GalleryFacts facts{input.dataset, conventions_of(request.folder),
+                     place_of(request.folder).lexically_relative(place).generic_string(),
+                     request.notes, worst_first(run_checks(input, {}))};
+  // Of most datasets nothing has changed, and nothing is written.
+  if (is_whole_folder(place, k_gallery_folder))
+    if (const auto made = standing_gallery_files(place, images)) {
+      const Files files = texts_of(facts, lines, images, *made);
+      if (stands(place, files, *made)) return result_of(*made, files, facts, images.size());
+    }
+
+  WholeFolder to(place, k_gallery_folder);
   const auto stop_if_asked = [&] {
     if (stop) fail(ErrorKind::cancelled, "stopped; no gallery is written");
   };
@@ -94,26 +149,13 @@ GalleryResult write_gallery(const GalleryRequest& request,
     stop_if_asked();
     progress(done, images.size());
   });
-  GalleryResult result{images.size(), 0, made.bytes, made.made, made.reused, made.broken.size(),
-                       request.notes};
-  if (const std::string text = broken_text(made.broken, images); !text.empty())
-    result.notes.push_back(text);
-
-  const fs::path folder = place_of(request.folder);
-  const GalleryFacts facts{input.dataset, conventions_of(request.folder),
-                           folder.lexically_relative(to.place()).generic_string(), result.notes,
-                           worst_first(run_checks(input, {}))};
-  const auto write = [&](const std::string& path, std::string_view text) {
+  const Files files = texts_of(facts, lines, images, made);
+  for (const auto& [path, text] : files) {
     stop_if_asked();
     to.write(path, bytes_of(text));
-    result.bytes += text.size();
-  };
-  write_gallery_data(facts, lines, images, made, write);
-  write(k_page, gallery_page(facts));
-  write(k_gallery_folder.record, made.record.text());
-  result.files = to.files();
+  }
   to.commit();
-  return result;
+  return result_of(made, files, facts, images.size());
 }
 
 }  // namespace ds

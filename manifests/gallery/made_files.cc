@@ -4,13 +4,14 @@
 #include "manifests/export/exporter.h"
 #include "manifests/gallery/previews.h"
 #include "tracer/base/error.h"
-#include "tracer/base/files.h"
+#include "tracer/base/hash_stream.h"
 #include "tracer/base/parallel.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <system_error>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -31,9 +32,10 @@ struct Task {
 };
 
 struct Done {
-  std::vector<std::byte> file;
-  std::vector<double> facts;
-  bool reused = false, broken = false;
+  enum class State { lacking, found, made, broken };
+  State state = State::lacking;
+  std::vector<std::byte> file;  ///< of one that was made
+  MadeRecord::Row row;          ///< its path: of the file that was found
 };
 
 /// Four digits, so that records are short and read back as they were.
@@ -49,35 +51,43 @@ DecodedImage decode(const fs::path& dataset, const FileRecord& file) {
 Done make(const fs::path& dataset, const Task& task) {
   const BytePicture picture = preview_of(decode(dataset, *task.source), task.source->kind);
   Done done;
+  done.state = Done::State::made;
   if (task.use == k_box) {
     if (picture.channels != 1) return done;
     if (const auto box = tight_box({picture.width, picture.height, picture.pixels}))
-      done.facts.assign(box->begin(), box->end());
+      done.row.facts.assign(box->begin(), box->end());
     return done;
   }
   if (task.use == k_thumbnail) {
     const Brightness brightness = brightness_of(picture);
-    done.facts = {four_digits(brightness.mean), four_digits(brightness.deviation)};
-    done.file = encode_jpeg(scaled_down(picture, k_thumbnail_pixels), k_jpeg_quality);
-  } else {
-    done.file = encode_jpeg(scaled_down(picture, k_preview_pixels), k_jpeg_quality);
+    done.row.facts = {four_digits(brightness.mean), four_digits(brightness.deviation)};
   }
+  const int longest = task.use == k_thumbnail ? k_thumbnail_pixels : k_preview_pixels;
+  done.file = encode_jpeg(scaled_down(picture, longest), k_jpeg_quality);
+  done.row.hash = hash_bytes(done.file);
   return done;
 }
 
-/// As it was made before, where that is still there.
-std::optional<Done> reuse(const MadeRecord& before, const fs::path& gallery, const Task& task) {
+bool has_bytes(const fs::path& file, Hash128 hash) {
+  std::error_code error;
+  return fs::is_regular_file(file, error) && content_hash(file) == hash;
+}
+
+/// As it was made before, where that is still there; the bytes of its file stay where they are.
+std::optional<MadeRecord::Row> find_made(const MadeRecord& before, const fs::path& gallery,
+                                         const Task& task) {
   const MadeRecord::Row* const row = before.find(task.use, task.source->hashes.xxh128);
   if (row == nullptr || row->path.empty() != task.path.empty()) return std::nullopt;
-  Done done{{}, row->facts, true, false};
-  if (task.path.empty()) return done;
+  if (task.path.empty()) return *row;
   try {
-    check_manifest_path(row->path);
-    const std::string bytes = read_text_file(gallery / row->path);
-    if (hash_text(bytes) != row->hash) return std::nullopt;
-    const auto span = bytes_of(bytes);
-    done.file.assign(span.begin(), span.end());
-    return done;
+    // Of images of one source the record has the first.
+    MadeRecord::Row found = *row;
+    check_manifest_path(found.path);
+    if (has_bytes(gallery / task.path, found.hash))
+      found.path = task.path;
+    else if (!has_bytes(gallery / found.path, found.hash))
+      return std::nullopt;
+    return found;
   } catch (const Error&) {  // gone: it is made anew
     return std::nullopt;
   }
@@ -118,20 +128,28 @@ std::vector<Task> tasks_of(std::size_t index, const ImageRecord& image) {
 
 class Maker {
  public:
-  Maker(const fs::path& dataset, std::size_t images, WholeFolder& to)
-      : dataset_(dataset), to_(to), before_(to.replaces() ? MadeRecord(to.place()) : MadeRecord()) {
+  /// `gallery`: the one that stands there, if any. Without `to` nothing is made or written.
+  Maker(fs::path dataset, fs::path gallery, std::size_t images, WholeFolder* to)
+      : dataset_(std::move(dataset)),
+        gallery_(std::move(gallery)),
+        to_(to),
+        before_(MadeRecord(gallery_)) {
     result_.extras.resize(images);
     result_.previews.resize(images);
   }
 
-  void run(const std::vector<Task>& tasks) {
+  /// False where something is lacking.
+  bool run(const std::vector<Task>& tasks) {
     std::vector<Done> done(tasks.size());
     parallel_ranges(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
         done[i] = one(tasks[i]);
     });
-    for (std::size_t i = 0; i < tasks.size(); ++i)
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+      if (done[i].state == Done::State::lacking) return false;
       keep(tasks[i], done[i]);
+    }
+    return true;
   }
 
   void set_box(std::size_t image, const std::optional<std::array<int, 4>>& box) {
@@ -142,58 +160,66 @@ class Maker {
 
  private:
   Done one(const Task& task) const {
-    if (auto kept = reuse(before_, to_.place(), task)) return std::move(*kept);
+    Done done;
+    if (auto row = find_made(before_, gallery_, task)) {
+      if (to_ == nullptr && row->path != task.path) return done;
+      done.state = Done::State::found;
+      done.row = std::move(*row);
+      return done;
+    }
+    if (to_ == nullptr) return done;
     try {
       return make(dataset_, task);
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::asset) throw;
-      Done broken;
-      broken.broken = true;
-      return broken;
+      done.state = Done::State::broken;
+      return done;
     }
   }
 
-  void keep(const Task& task, const Done& done) {
-    if (done.broken) {
+  void keep(const Task& task, Done& done) {
+    if (done.state == Done::State::broken) {
       auto& broken = result_.broken;
       if (broken.empty() || broken.back() != task.image) broken.push_back(task.image);
       return;
     }
     ImageExtras& extras = result_.extras[task.image];
-    if (task.use == k_thumbnail && done.facts.size() == 2) {
-      extras.brightness = done.facts[0];
-      extras.contrast = done.facts[1];
-    } else if (task.use == k_box && done.facts.size() == 4) {
+    const std::vector<double>& facts = done.row.facts;
+    if (task.use == k_thumbnail && facts.size() == 2) {
+      extras.brightness = facts[0];
+      extras.contrast = facts[1];
+    } else if (task.use == k_box && facts.size() == 4) {
       extras.box.emplace();
-      std::transform(done.facts.begin(), done.facts.end(), extras.box->begin(),
+      std::transform(facts.begin(), facts.end(), extras.box->begin(),
                      [](double value) { return static_cast<int>(value); });
     }
-    MadeRecord::Row row{{}, task.path, done.facts};
-    if (!task.path.empty()) {
-      row.hash = hash_bytes(done.file);
-      to_.write(task.path, done.file);
-      result_.bytes += done.file.size();
-      ++(done.reused ? result_.reused : result_.made);
-      if (task.use != k_thumbnail) result_.previews[task.image].push_back(task.use);
-    }
-    result_.record.add(task.use, task.source->hashes.xxh128, std::move(row));
+    if (!task.path.empty()) keep_file(task, done);
+    done.row.path = task.path;
+    result_.record.add(task.use, task.source->hashes.xxh128, std::move(done.row));
   }
 
-  const fs::path& dataset_;
-  WholeFolder& to_;
+  void keep_file(const Task& task, const Done& done) {
+    if (task.use != k_thumbnail) result_.previews[task.image].push_back(task.use);
+    if (done.state == Done::State::found) {
+      ++result_.reused;
+      result_.bytes += fs::file_size(gallery_ / done.row.path);
+      if (to_ != nullptr) to_->keep(task.path, done.row.hash, done.row.path);
+    } else {
+      ++result_.made;
+      result_.bytes += done.file.size();
+      to_->write(task.path, done.file);
+    }
+  }
+
+  fs::path dataset_, gallery_;
+  WholeFolder* to_;
   MadeRecord before_;
   MadeFiles result_;
 };
 
-}  // namespace
-
-std::string gallery_file_stem(std::size_t image) {
-  return fmt::format("{:02}/{:05}", image / 1000, image);
-}
-
-MadeFiles make_gallery_files(const fs::path& dataset, const std::vector<ImageRecord>& images,
-                             WholeFolder& to, const std::function<void(std::uint64_t)>& done) {
-  Maker maker(dataset, images.size(), to);
+/// Nothing where something is lacking.
+std::optional<MadeFiles> run_all(Maker& maker, const std::vector<ImageRecord>& images,
+                                 const std::function<void(std::uint64_t)>& done) {
   for (std::size_t begin = 0; begin < images.size(); begin += k_images_at_once) {
     const std::size_t end = std::min(begin + k_images_at_once, images.size());
     std::vector<Task> tasks;
@@ -202,10 +228,30 @@ MadeFiles make_gallery_files(const fs::path& dataset, const std::vector<ImageRec
       for (Task& task : tasks_of(i, images[i]))
         tasks.push_back(std::move(task));
     }
-    maker.run(tasks);
+    if (!maker.run(tasks)) return std::nullopt;
     done(end);
   }
   return std::move(maker).take();
+}
+
+}  // namespace
+
+std::string gallery_file_stem(std::size_t image) {
+  return fmt::format("{:02}/{:05}", image / 1000, image);
+}
+
+std::optional<MadeFiles> standing_gallery_files(const fs::path& gallery,
+                                                const std::vector<ImageRecord>& images) {
+  Maker maker({}, gallery, images.size(), nullptr);
+  return run_all(maker, images, [](std::uint64_t) {});
+}
+
+MadeFiles make_gallery_files(const fs::path& dataset, const std::vector<ImageRecord>& images,
+                             WholeFolder& to, const std::function<void(std::uint64_t)>& done) {
+  Maker maker(dataset, to.place(), images.size(), &to);
+  std::optional<MadeFiles> made = run_all(maker, images, done);
+  DS_ASSERT(made.has_value());
+  return std::move(*made);
 }
 
 }  // namespace ds

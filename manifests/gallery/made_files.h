@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,11 @@ struct MadeFiles {
   MadeRecord record;
   std::uint64_t made = 0, reused = 0, bytes = 0;
 };
+
+/// What stands in a gallery, where all that would be made is there under its name, whole and of the sources
+/// as they are now.
+std::optional<MadeFiles> standing_gallery_files(const std::filesystem::path& gallery,
+                                                const std::vector<ImageRecord>& images);
 
 /// Writes thumbnails and previews into the folder, on all processors; those of the gallery that it
 /// replaces are taken over where their source has the hash it had. A file that is missing, damaged or

@@ -108,8 +108,11 @@ class GalleryTest(TinyCase):
     def test_the_same_bytes_and_only_what_is_new(self):
         self.gallery()
         before = self.contents(self.to)
+        folder = self.to.stat().st_ino
         told = self.gallery()
         self.assertEqual((told["made"], told["reused"]), (0, 3 * IMAGES))
+        self.assertEqual(told["files"], len(before) - 1)
+        self.assertEqual(self.to.stat().st_ino, folder, "nothing was to be written, and nothing was")
         self.assertEqual(self.contents(self.to), before)
         shutil.rmtree(self.to)
         self.assertEqual(self.gallery()["made"], 3 * IMAGES)
@@ -221,17 +224,24 @@ class GalleryTest(TinyCase):
         page = (self.to / "index.html").read_text()
         self.assertNotIn("onerror=alert", page)
 
-    def test_killed_it_leaves_the_old_one(self):
+    def test_killed_it_leaves_the_old_one_or_has_the_new(self):
         self.gallery()
-        before = self.contents(self.to)
-        for delay in (0.02, 0.05, 0.1, 0.2, 0.3):
+        states = [self.contents(self.to)]
+        self.edit("materials/red.mat", "0.7", "0.6")
+        self.build()
+        for delay in (0.02, 0.05, 0.1, 0.15, 0.2, 0.3):
             process = subprocess.Popen(self.command("gallery", self.out), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             time.sleep(delay)
             process.send_signal(signal.SIGKILL)
             process.wait()
-            self.assertEqual(self.contents(self.to), before)
+            states.append(self.contents(self.to))
+            self.assertEqual(self.run_it("verify", self.to).code, 0)
             self.assertEqual(self.run_it("verify", self.out).code, 0)
         self.gallery()
+        states.append(self.contents(self.to))
+        self.assertNotEqual(states[0], states[-1])
+        for state in states:
+            self.assertIn(state, (states[0], states[-1]))
         self.assertEqual([path.name for path in self.out.iterdir() if path.name.startswith(".dsbuild-")], [])
 
 
