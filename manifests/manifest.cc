@@ -146,6 +146,7 @@ json to_json_value(const DatasetRecord& dataset) {
          "right, y up, z backward)"},
         {"box", "[x, y, width, height] in whole pixels around the model in the mask"},
         {"model_box", "[least, most] of the model file's coordinates; box_m in the world"}}}};
+  if (!dataset.about.empty()) object["about"] = dataset.about;
   if (!dataset.hierarchies.empty()) object["hierarchies"] = dataset.hierarchies;
   for (const auto& [name, plane] : dataset.planes)
     object["planes"][name] = {{"encoding", plane.encoding}, {"convention", plane.convention}};

@@ -98,6 +98,9 @@ struct PlaneRecord {
 
 struct DatasetRecord {
   std::string name, licence;
+  /// "about": of description, creator, url, published (YYYY-MM-DD), version, cite those that the recipe
+  /// gives. Not there where it gives none.
+  std::map<std::string, std::string> about{};
   std::string recipe_text;  ///< canonical_recipe(): no path of this machine
   std::string dsbuild_version;
   std::uint64_t seed = 0;

@@ -370,6 +370,12 @@ DatasetRecord dataset_from_json(const std::string& text, const std::string& file
     fields.text("dsbuild_version", dataset.dsbuild_version);
     fields.count("seed", dataset.seed);
     read_texts(fields, "class_paths", dataset.class_paths);
+    if (object->contains("about")) {
+      std::vector<std::pair<std::string, std::string>> about;
+      read_members(fields, *object, place, diagnostics, "about", about,
+                   [](Fields& f, const char* name, std::string& to) { f.text(name, to); });
+      dataset.about = {about.begin(), about.end()};
+    }
     if (object->contains("hierarchies")) {
       std::vector<std::pair<std::string, std::vector<std::string>>> hierarchies;
       read_members(fields, *object, place, diagnostics, "hierarchies", hierarchies, read_texts);

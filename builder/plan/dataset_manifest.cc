@@ -24,14 +24,6 @@ int mean_spp(const FilmFacts& facts, const ImageRecord& image) {
   return static_cast<int>((facts.samples + pixels - 1) / pixels);
 }
 
-std::vector<std::pair<std::string, std::filesystem::path>> with_names(
-    const std::vector<std::filesystem::path>& assets) {
-  std::vector<std::pair<std::string, std::filesystem::path>> named;
-  for (const std::filesystem::path& asset : assets)
-    named.emplace_back(asset.filename().string(), asset);
-  return named;
-}
-
 /// The classes that images have in each.
 std::map<std::string, std::vector<std::string>> hierarchies_of(const Plan& plan) {
   std::map<std::string, std::set<std::string>> classes;
@@ -119,6 +111,7 @@ DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
   DatasetRecord record;
   record.name = recipe.name;
   record.licence = recipe.licence;
+  record.about = recipe.about;
   record.recipe_text = canonical_recipe(recipe);
   record.dsbuild_version = program_version();
   record.seed = recipe.seed;
@@ -142,18 +135,9 @@ DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
   for (const auto& [model, what] : plan.mended)
     if (models.contains(model)) record.mended_models.emplace_back(model, what.damage);
   std::vector<std::pair<std::string, std::string>> texts;
-  const auto add_licences =
-      [&](const char* kind,
-          const std::vector<std::pair<std::string, std::filesystem::path>>& assets) {
-        for (auto& licence : licences_beside(kind, assets))
-          texts.push_back(std::move(licence));
-      };
-  std::vector<std::pair<std::string, std::filesystem::path>> model_files;
-  for (const ModelFile& model : recipe.models)
-    model_files.emplace_back(model.name, model.file);
-  add_licences("models", model_files);
-  add_licences("materials", with_names(recipe.materials));
-  add_licences("environments", with_names(recipe.environments));
+  for (const auto& [kind, assets] : licensed_assets(recipe))
+    for (auto& licence : licences_beside(kind, assets))
+      texts.push_back(std::move(licence));
   record.licences = group_licences(texts);
   record.concerns = dataset_concerns(recipe, plan.concerns, images, pending);
   return record;

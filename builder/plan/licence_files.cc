@@ -6,9 +6,11 @@
 #include "tracer/base/log.h"
 #include "tracer/base/utf8.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <system_error>
 
 namespace ds {
@@ -48,8 +50,8 @@ std::optional<std::string> licence_near(const fs::path& folder, bool is_asset) {
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> licences_beside(
-    const std::string& kind, const std::vector<std::pair<std::string, fs::path>>& assets) {
+std::vector<std::pair<std::string, std::string>> licences_beside(const std::string& kind,
+                                                                 const NamedAssets& assets) {
   // One look a folder: there may be thousands of models.
   std::map<fs::path, std::optional<std::string>> known;
   std::vector<std::pair<std::string, std::string>> licences;
@@ -61,6 +63,44 @@ std::vector<std::pair<std::string, std::string>> licences_beside(
     if (entry->second) licences.emplace_back(fmt::format("{}/{}", kind, name), *entry->second);
   }
   return licences;
+}
+
+std::vector<std::pair<std::string, NamedAssets>> licensed_assets(const Recipe& recipe) {
+  const auto named = [](const std::vector<fs::path>& assets) {
+    NamedAssets with_names;
+    for (const fs::path& asset : assets)
+      with_names.emplace_back(asset.filename().string(), asset);
+    return with_names;
+  };
+  NamedAssets models;
+  for (const ModelFile& model : recipe.models)
+    models.emplace_back(model.name, model.file);
+  return {{"models", std::move(models)},
+          {"materials", named(recipe.materials)},
+          {k_environments.data(), named(recipe.environments)}};
+}
+
+void check_licensed(const Recipe& recipe) {
+  if (!recipe.refuses_unlicensed) return;
+  constexpr std::size_t k_shown = 3;
+  std::vector<std::string> without;
+  for (const auto& [kind, assets] : licensed_assets(recipe)) {
+    std::set<std::string> licensed;
+    for (const auto& [name, text] : licences_beside(kind, assets))
+      licensed.insert(name);
+    for (const auto& [name, asset] : assets)
+      if (const std::string whole = kind + "/" + name; !licensed.contains(whole))
+        without.push_back(whole);
+  }
+  if (without.empty()) return;
+  const auto shown =
+      without.begin() + static_cast<std::ptrdiff_t>(std::min(without.size(), k_shown));
+  fail(
+      ErrorKind::recipe,
+      "{}: dataset.unlicensed = \"error\" wants a licence beside every asset, found none for {}{}: "
+      "put a LICENSE file into their folder or the one above",
+      recipe.file.string(), fmt::join(without.begin(), shown, ", "),
+      without.size() > k_shown ? fmt::format(" and {} more", without.size() - k_shown) : "");
 }
 
 }  // namespace ds

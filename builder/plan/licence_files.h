@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "builder/recipe/recipe.h"
+
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -8,11 +10,17 @@
 
 namespace ds {
 
-/// The licence texts found beside assets (files or folders), one folder up or in an asset
-/// that is a folder, as UTF-8, by "KIND/NAME"; `assets` are their names and paths. Nothing for an asset without one. A licence that cannot be read, or is larger than
+/// Assets (files or folders) by what the manifest calls them.
+using NamedAssets = std::vector<std::pair<std::string, std::filesystem::path>>;
+
+/// The licence texts found beside assets, one folder up or in an asset that is a folder, as UTF-8, by
+/// "KIND/NAME". Nothing for an asset without one. A licence that cannot be read, or is larger than
 /// licences are, is a warning and none: it costs nobody a dataset.
-std::vector<std::pair<std::string, std::string>> licences_beside(
-    const std::string& kind,
-    const std::vector<std::pair<std::string, std::filesystem::path>>& assets);
+std::vector<std::pair<std::string, std::string>> licences_beside(const std::string& kind,
+                                                                 const NamedAssets& assets);
+/// By kind: "models", "materials", "environments".
+std::vector<std::pair<std::string, NamedAssets>> licensed_assets(const Recipe& recipe);
+/// Throws Error(recipe) where dataset.unlicensed = "error" and an asset has no licence.
+void check_licensed(const Recipe& recipe);
 
 }  // namespace ds

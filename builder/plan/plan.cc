@@ -2,6 +2,7 @@
 #include "builder/plan/plan.h"
 
 #include "builder/plan/hash_index.h"
+#include "builder/plan/licence_files.h"
 #include "builder/plan/limits.h"
 #include "builder/plan/manifest_state.h"
 #include "builder/plan/placed_files.h"
@@ -322,6 +323,7 @@ std::uint64_t PlannedImage::samples() const {
 }
 
 Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
+  check_licensed(dataset.recipe);
   Plan plan;
   plan.data_version = dataset.database->data_version();
   std::optional<Snapshot> snapshot(std::in_place, dataset.database->connection());

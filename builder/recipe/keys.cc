@@ -43,6 +43,19 @@ constexpr std::array k_own_keys = {
             "Changes every random choice, every split by hash and the noise of every image"},
     KeySpec{"dataset.licence", manifest, text, "", "\"\"", k_any, "", "",
             "Licence of the pictures, copied into the manifest"},
+    KeySpec{
+        "dataset.unlicensed", manifest, choice, "", "\"keep\"", k_any, R"("keep" | "error")", "",
+        "Models, materials and environments with no licence beside them: build with them, and say "
+        "so in exports, or fail"},
+    KeySpec{"dataset.description", manifest, text, "", "\"\"", k_any, "", "",
+            "What it is, for the manifest and what exports say of it, as the next five"},
+    KeySpec{"dataset.creator", manifest, text, "", "\"\"", k_any, "", "", "Who made it"},
+    KeySpec{"dataset.url", manifest, text, "", "\"\"", k_any, "", "", "Where it is to be found"},
+    KeySpec{"dataset.published", manifest, text, "", "\"\"", k_any, "", "",
+            "Day of publication, as \"2026-11-27\". Never taken from a clock"},
+    KeySpec{"dataset.version", manifest, text, "", "\"\"", k_any, "", "", "Its version, as 1.2.0"},
+    KeySpec{"dataset.cite", manifest, text, "", "\"\"", k_any, "", "",
+            "How to cite it, as a sentence or BibTeX"},
 
     KeySpec{
         "models.dir", images, path, "", "", k_any, "", "",

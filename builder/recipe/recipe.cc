@@ -107,6 +107,27 @@ void read_assignments(Settings& settings, Recipe& recipe) {
   }
 }
 
+/// YYYY-MM-DD.
+bool is_date(std::string_view text) {
+  constexpr std::string_view k_form = "0000-00-00";
+  return text.size() == k_form.size() &&
+         std::equal(text.begin(), text.end(), k_form.begin(), [](char c, char form) {
+           return form == '-' ? c == '-' : c >= '0' && c <= '9';
+         });
+}
+
+std::map<std::string, std::string> read_about(const Settings& settings) {
+  std::map<std::string, std::string> about;
+  for (const char* name : {"description", "creator", "url", "published", "version", "cite"}) {
+    const std::string key = fmt::format("dataset.{}", name);
+    const std::string& text = settings.text(key);
+    if (!text.empty()) about.emplace(name, text);
+    if (name == std::string_view("published") && !text.empty() && !is_date(text))
+      settings.complain(key, fmt::format("must be a day as 2026-11-27, got {:?}", text));
+  }
+  return about;
+}
+
 std::string name_from_file(const Settings& settings, const fs::path& file) {
   if (settings.find("dataset.name") != nullptr) return settings.text("dataset.name");
   std::string stem = file.stem().string();
@@ -157,6 +178,8 @@ Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrid
   recipe.name = name_from_file(settings, file);
   recipe.seed = static_cast<std::uint64_t>(*settings.find("dataset.seed")->integer());
   recipe.licence = settings.text("dataset.licence");
+  recipe.refuses_unlicensed = settings.text("dataset.unlicensed") == "error";
+  recipe.about = read_about(settings);
   recipe.models = find_models(settings);
   recipe.materials = find_materials(settings);
   recipe.environments = find_environments(settings);

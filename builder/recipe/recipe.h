@@ -80,7 +80,9 @@ struct Recipe {
   std::string name;
   std::uint64_t seed = 0;
   std::string licence;
-  std::vector<ModelFile> models;  ///< sorted by name, which no two share
+  bool refuses_unlicensed = false;           ///< dataset.unlicensed
+  std::map<std::string, std::string> about;  ///< dataset.description, ... by name; those given
+  std::vector<ModelFile> models;             ///< sorted by name, which no two share
   /// Material files, sorted by name, which no two share.
   std::vector<std::filesystem::path> materials;
   std::vector<std::filesystem::path> environments;  ///< folders, sorted by name, which no two share

@@ -85,8 +85,8 @@ std::string counts_text(const ExportInput& input) {
   }
   text += rule + "\n";
   for (const auto& [path, by_split] : input.counts) {
-    const auto at = std::lower_bound(input.classes.begin(), input.classes.end(), path);
-    const bool known = at != input.classes.end() && *at == path;
+    const auto at = std::find(input.classes.begin(), input.classes.end(), path);
+    const bool known = at != input.classes.end();
     text += fmt::format("| {} | {} |", path.empty() ? "none" : path,
                         known ? std::to_string(at - input.classes.begin()) : "");
     for (const auto& [split, count] : input.splits) {
@@ -111,6 +111,23 @@ std::string notes_text(const ExportInput& input, const ExportFolder& to) {
   for (const std::string& note : to.notes())
     text += fmt::format("- {}\n", note);
   return text.empty() ? "" : "\n## Notes\n\n" + text;
+}
+
+/// What the recipe says of the dataset as a whole.
+std::string about_text(const DatasetRecord& dataset) {
+  const auto said = [&](const char* name) {
+    const auto at = dataset.about.find(name);
+    return at == dataset.about.end() ? std::string() : at->second;
+  };
+  std::string text = said("description");
+  if (!text.empty()) text += "\n\n";
+  std::string line;
+  for (const auto& [name, label] : {std::pair("creator", "by"), std::pair("version", "version"),
+                                    std::pair("published", "published"), std::pair("url", "at")})
+    if (const std::string value = said(name); !value.empty())
+      line += fmt::format("{}{} {}", line.empty() ? "" : ", ", label, value);
+  if (!line.empty()) text += line + ".\n\n";
+  return text;
 }
 
 std::string planes_text(const ExportInput& input, const ExporterType& type) {
@@ -144,8 +161,8 @@ std::string licences_text(const ExportInput& input) {
 std::string body(const ExportInput& input, const ExporterType& type, const ExportFolder& to) {
   const DatasetRecord& dataset = input.dataset;
   std::string text =
-      fmt::format("# {}\n\nPictures of 3D models, path-traced by dsbuild, {} pixels, as {}.\n\n",
-                  dataset.name, input.size, type.help);
+      fmt::format("# {}\n\n{}Pictures of 3D models, path-traced by dsbuild, {} pixels, as {}.\n\n",
+                  dataset.name, about_text(dataset), input.size, type.help);
   text += counts_text(input) + planes_text(input, type);
   text +=
       "\nEverything here is computed, nothing was drawn or looked at by a person, and whatever a "
@@ -159,6 +176,8 @@ std::string body(const ExportInput& input, const ExporterType& type, const Expor
       "World: right-handed, z up, metres. Cameras: x right, y down, z forward; pixel centres at "
       ".5.\n";
   text += notes_text(input, to) + licences_text(input);
+  if (const auto cite = dataset.about.find("cite"); cite != dataset.about.end())
+    text += fmt::format("\n## How to cite\n\n```\n{}\n```\n", cite->second);
   text += fmt::format(
       "\n## How it was made\n\nBy dsbuild {}, seed {}; `dsbuild build` makes the dataset's files "
       "again "

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Apache Parquet as Hugging Face's hub has it: data/SPLIT-%05d.parquet, files of up to 500 MB, pictures in
 // them. The footer tells the features, so that labels have their classes' names.
-#include "manifests/export/exporter.h"
-#include "manifests/export/parquet_file.h"
+#include "manifests/export/parquet_export.h"
 #include "manifests/export/sample_fields.h"
 #include "manifests/json_text.h"
 
@@ -53,71 +52,55 @@ nlohmann::json feature(ParquetType type) {
   return {};
 }
 
-class Parquet : public Exporter {
- public:
-  Parquet(const ExportInput& input, ExportFolder& to) : input_(input), to_(to) {
-    columns_.push_back({"id", ParquetType::text});
-    for (const std::string& kind : input.kinds) {
-      if (is_exr(kind)) {
-        to.note(
-            fmt::format("{} is EXR, which readers of this format cannot decode: left out", kind));
-        continue;
-      }
-      kinds_.push_back(kind);
-      columns_.push_back({kind, ParquetType::image});
-    }
-    for (const auto& [name, type] : k_fields)
-      columns_.push_back({name, type});
-    if (input.has("mask")) columns_.push_back({"bbox", ParquetType::int64_list});
-    nlohmann::json features;
-    for (const auto& [name, type] : columns_)
-      features[name] = feature(type);
-    features["label"] = {{"names", input.classes}, {"_type", "ClassLabel"}};
-    info_ = canonical_json({{"info", {{"features", features}}}});
-  }
-
-  void add(const ExportImage& image) override {
-    std::vector<ParquetImage> images;
-    for (const std::string& kind : kinds_) {
-      const FileRecord& file = file_of(image, kind);
-      images.push_back({place_of_kind(image, kind), read_checked(input_.folder, file)});
-    }
-    Split& split = splits_[image.split];
-    if (split.file && split.file->bytes() > k_file_bytes) {
-      split.file->close();
-      split.file.reset();
-    }
-    if (!split.file)
-      split.file = std::make_unique<ParquetFile>(
-          to_, fmt::format("data/{}-{:05}.parquet", image.split, split.number++), columns_, info_);
-    split.file->add(sample_fields(input_, image), images);
-  }
-
-  void finish() override {
-    for (auto& [name, split] : splits_)
-      split.file->close();
-  }
-
- private:
-  bool is_exr(const std::string& kind) const {
-    for (const auto& [name, plane] : input_.dataset.planes)
-      if (name == kind) return plane.encoding == "exr" || plane.encoding == "half";
-    return false;
-  }
-
-  struct Split {
-    std::unique_ptr<ParquetFile> file;
-    int number = 0;
-  };
-  const ExportInput& input_;
-  ExportFolder& to_;
-  std::vector<std::string> kinds_;  ///< of files in it
-  std::vector<ParquetFile::Column> columns_;
-  std::string info_;
-  std::map<std::string, Split> splits_;
-};
-
 }  // namespace
+
+Parquet::Parquet(const ExportInput& input, ExportFolder& to) : input_(input), to_(to) {
+  columns_.push_back({"id", ParquetType::text});
+  for (const std::string& kind : input.kinds) {
+    if (is_exr(kind)) {
+      to.note(fmt::format("{} is EXR, which readers of this format cannot decode: left out", kind));
+      continue;
+    }
+    kinds_.push_back(kind);
+    columns_.push_back({kind, ParquetType::image});
+  }
+  for (const auto& [name, type] : k_fields)
+    columns_.push_back({name, type});
+  if (input.has("mask")) columns_.push_back({"bbox", ParquetType::int64_list});
+  nlohmann::json features;
+  for (const auto& [name, type] : columns_)
+    features[name] = feature(type);
+  features["label"] = {{"names", input.classes}, {"_type", "ClassLabel"}};
+  info_ = canonical_json({{"info", {{"features", features}}}});
+}
+
+void Parquet::add(const ExportImage& image) {
+  std::vector<ParquetImage> images;
+  for (const std::string& kind : kinds_) {
+    const FileRecord& file = file_of(image, kind);
+    images.push_back({place_of_kind(image, kind), read_checked(input_.folder, file)});
+  }
+  Split& split = splits_[image.split];
+  if (split.file && split.file->bytes() > k_file_bytes) {
+    split.file->close();
+    split.file.reset();
+  }
+  if (!split.file)
+    split.file = std::make_unique<ParquetFile>(
+        to_, fmt::format("data/{}-{:05}.parquet", image.split, split.number++), columns_, info_);
+  split.file->add(sample_fields(input_, image), images);
+}
+
+void Parquet::finish() {
+  for (auto& [name, split] : splits_)
+    split.file->close();
+}
+
+bool Parquet::is_exr(const std::string& kind) const {
+  for (const auto& [name, plane] : input_.dataset.planes)
+    if (name == kind) return plane.encoding == "exr" || plane.encoding == "half";
+  return false;
+}
 
 ExporterType parquet_exporter() {
   return {

@@ -12,7 +12,7 @@ import time
 import image_reader
 from harness import IMAGES, TinyCase, main
 
-FORMATS = ["coco", "csv", "imagefolder", "nerf", "parquet", "webdataset", "yolo"]
+FORMATS = ["coco", "croissant", "csv", "imagefolder", "nerf", "parquet", "webdataset", "yolo"]
 TRAIN = "PSB 1\n2 1\nsolid 0 0\nbox solid 1\nbox\n"
 TEST = "PSB 1\n2 1\nsolid 0 0\nspike solid 1\ntetra\n"
 CLASSES = ["solid/box", "solid/spike"]
@@ -186,6 +186,36 @@ class ExportTest(TinyCase):
             self.assertEqual((CLASSES[int(sample["cls"])], json.loads(sample["json"])["id"]), (record["class_path"], record["id"]))
             source = next(f["path"] for f in record["files"] if f["kind"] == "image")
             self.assertEqual(sample["png"], (self.out / source).read_bytes())
+
+    def test_what_the_recipe_says_of_the_dataset_goes_out_with_it(self):
+        about = {"description": "Two solids.", "creator": "A. Maker", "url": "https://example.org/solids",
+                 "published": "2026-11-27", "version": "2.1.0", "cite": "A. Maker: Solids. 2026."}
+        more = [word for name, text in about.items() for word in ("--set", f"dataset.{name}={json.dumps(text)}")]
+        self.assert_counts(self.build(*more), traced=0)
+        dataset = json.loads((self.out / "manifest/dataset.json").read_text())
+        self.assertEqual(dataset["about"], about)
+        self.export("croissant")
+        croissant = json.loads((self.to / "croissant.json").read_text())
+        for name, field in (("description", "description"), ("url", "url"), ("published", "datePublished"),
+                            ("version", "version"), ("cite", "citeAs")):
+            self.assertEqual(croissant[field], about[name])
+        self.assertEqual((croissant["creator"]["name"], croissant["license"]),
+                         ("A. Maker", "https://spdx.org/licenses/CC0-1.0.html"))
+        card = (self.to / "README.md").read_text()
+        self.assertIn("Two solids.\n\nby A. Maker, version 2.1.0, published 2026-11-27, at https://example.org/solids.", card)
+        self.assertIn("## How to cite\n\n```\nA. Maker: Solids. 2026.\n```", card)
+        run = self.run_it("plan", self.recipe, "--set", "dataset.published=yesterday")
+        self.assertEqual(run.code, 2)
+        self.assertIn("must be a day as 2026-11-27, got", run.err)
+
+    def test_a_recipe_may_refuse_what_has_no_licence(self):
+        strict = ["--set", "dataset.unlicensed=error"]
+        run = self.run_it("plan", self.recipe, "-o", self.out, *strict)
+        self.assertEqual(run.code, 2, run)
+        self.assertIn("found none for models/box.off, models/tetra.ply, materials/green.mat and 3 more", run.err)
+        for folder in ("models", "materials", "environments"):
+            (self.tiny / folder / "LICENSE").write_text("SPDX-License-Identifier: MIT\n")
+        self.assert_counts(self.build(*strict), traced=0)
 
     def test_nerf(self):
         """A point of the world lands on one pixel by the manifest's pose and by the scene's."""

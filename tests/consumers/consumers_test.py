@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Exports as their real consumers read them: pycocotools, Hugging Face datasets, webdataset."""
+"""Exports as their real consumers read them: pycocotools, Hugging Face datasets, mlcroissant, webdataset."""
 import contextlib
 import io
 import json
+import logging
 import os
 import pathlib
 import sys
@@ -11,6 +12,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "cli"))
 os.environ["HF_HUB_OFFLINE"] = "1"  # nothing here is to ask a server
 
 import datasets
+import mlcroissant
 import numpy
 import pyarrow.parquet as parquet
 import webdataset
@@ -114,6 +116,25 @@ class ConsumersTest(TinyCase):
         rows = parquet.read_table(self.to / "data/train-00000.parquet").to_pylist()
         self.assertEqual([(row["camera_model"], row["intrinsics"], row["metres_per_pixel"]) for row in rows],
                          [("orthographic", None, 0.25 / 32)] * (IMAGES // 2))
+
+    def test_croissant(self):
+        self.build("--set", 'dataset.cite="Solids"', "--set", 'dataset.published="2026-11-27"')
+        self.export("croissant")
+        dataset = mlcroissant.Dataset(jsonld=str(self.to / "croissant.json"))
+        issues = dataset.metadata.ctx.issues
+        self.assertEqual((set(issues.errors), set(issues.warnings)), (set(), set()))
+        logging.disable(logging.WARNING)  # "Could not match": of paths that it has cut already
+        self.addCleanup(logging.disable, logging.NOTSET)
+        for split in ("train", "test"):
+            rows = list(dataset.records("images", filters={"images/split": split}))
+            self.assertEqual(len(rows), IMAGES // 2)
+            for row in rows:
+                record = self.records[row["images/id"].decode()]
+                self.assertEqual((row["images/split"].decode(), CLASSES[row["images/label"]]), (split, record["class_path"]))
+                for kind in ("image", "mask"):
+                    numpy.testing.assert_array_equal(numpy.asarray(row[f"images/{kind}"]), self.picture(record, kind))
+                self.assertEqual(numpy.asarray(row["images/camera_to_world"]).tolist(), record["camera_to_world"])
+                self.assertEqual(list(row["images/bbox"]), record["box"])
 
     def test_webdataset(self):
         self.export("webdataset")

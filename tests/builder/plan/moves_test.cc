@@ -38,6 +38,7 @@ class Moving : public TinyDataset {
     };
     put("all.cla", "PSB 1\n1 2\n\nthing 0 2\nbox\ntetra\n");
     put("ids.txt", "other\nthing\n");
+    put("LICENSE", "for models, materials and environments\n");
     put("box.cla", "PSB 1\n1 1\n\nthing 0 1\nbox\n");
     std::filesystem::create_directories(recipe_folder() / "models/more");
     std::filesystem::copy(recipe_folder() / "models/box.off",
@@ -128,6 +129,13 @@ std::vector<Flip> Moving::flips() const {
       {"dataset.name", "\"one\"", "\"other\""},
       {"dataset.seed", "1", "2"},
       {"dataset.licence", "\"\"", "\"CC0-1.0\""},
+      {"dataset.unlicensed", "\"keep\"", "\"error\""},
+      {"dataset.description", "\"\"", "\"text\""},
+      {"dataset.creator", "\"\"", "\"text\""},
+      {"dataset.url", "\"\"", "\"text\""},
+      {"dataset.published", "\"\"", "\"2026-11-27\""},
+      {"dataset.version", "\"\"", "\"text\""},
+      {"dataset.cite", "\"\"", "\"text\""},
       {"models.dir", path("models"), path("few_models")},
       {"models.files", paths("models/box.off"), paths("models/tetra.ply")},
       {"models.recursive", "false", "true"},
