@@ -5,13 +5,14 @@
 #pragma once
 
 /// Those with a BSDF, and those that choose among other materials.
-#define DS_SCATTERING_MATERIALS(X) \
-  X("matte", matte, MATTE)         \
-  X("glossy2", glossy2, GLOSSY2)   \
-  X("metal2", metal2, METAL2)      \
-  X("mirror", mirror, MIRROR)      \
-  X("glass", glass, GLASS)         \
-  X("roughglass", roughglass, ROUGHGLASS)
+#define DS_SCATTERING_MATERIALS(X)        \
+  X("matte", matte, MATTE)                \
+  X("glossy2", glossy2, GLOSSY2)          \
+  X("metal2", metal2, METAL2)             \
+  X("mirror", mirror, MIRROR)             \
+  X("glass", glass, GLASS)                \
+  X("roughglass", roughglass, ROUGHGLASS) \
+  X("velvet", velvet, VELVET)
 #define DS_CHOOSING_MATERIALS(X) X("mix", mix, MIX)
 #define DS_ALL_MATERIALS(X) DS_SCATTERING_MATERIALS(X) DS_CHOOSING_MATERIALS(X)
 

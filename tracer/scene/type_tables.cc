@@ -110,6 +110,7 @@ InputLimit limit_of(std::string_view name) {
       {"uroughness", k_share},
       {"vroughness", k_share},
       {"amount", k_share},
+      {"thickness", k_not_negative},
       {"channel", {.least = -1, .most = 2}},
       {"octaves", {.least = 0, .most = 32}},  // a sample pays for each
       {"doublesided", k_share, true},

@@ -17,14 +17,21 @@ bool is_roughness(std::string_view name) {
   return name.ends_with("roughness");
 }
 
-/// Greatest value an input may sensibly take; the least is 0 but for indices of refraction.
+/// Of a polynomial.
+bool is_coefficient(std::string_view name) {
+  return name == "p1" || name == "p2" || name == "p3";
+}
+
+/// Greatest value an input may sensibly take; the least is 0 but for indices of refraction and coefficients.
 float greatest(std::string_view name) {
   if (name == "n" || name == "k" || name == "ka") return 10;
   if (name == "d" || name == "index" || name.ends_with("ior")) return 3;
+  if (is_coefficient(name)) return 30;
   return 1;
 }
 float least(std::string_view name) {
   if (name.ends_with("ior")) return 1;
+  if (is_coefficient(name)) return -30;
   return 0;
 }
 

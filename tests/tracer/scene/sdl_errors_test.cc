@@ -30,8 +30,8 @@ INSTANTIATE_TEST_SUITE_P(
     All, MaterialErrors,
     ::testing::Values(
         Case{"", "m.scn: wanted a material, found no scene.materials"},
-        Case{"scene.materials.a.type = velvet\nscene.materials.a.kd = 1\n",
-             std::string("m.scn:1: scene.materials.a.type: material type \"velvet\" is not "
+        Case{"scene.materials.a.type = cloth\nscene.materials.a.kd = 1\n",
+             std::string("m.scn:1: scene.materials.a.type: material type \"cloth\" is not "
                          "supported yet; there "
                          "are ") +
                  types(material_section())},
