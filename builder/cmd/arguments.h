@@ -37,6 +37,7 @@ struct Arguments {
   bool adopt = false;
   bool copy = false;
   bool verbose = false;
+  std::string schema;             ///< which one
   std::string topic, topic_name;  ///< of help
 
   DatasetRequest request() const { return {target, overrides, output_folder, store_folder, adopt}; }
@@ -50,6 +51,7 @@ enum class Option {
   copy_models,
   optional_target_and_image,
   topic,
+  schema,
   overrides,
   output_folder,
   store_folder,

@@ -101,6 +101,12 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
       verb.add_option("NAME", to.topic_name,
                       "one type of the topic (materials glass), or a section or key of a recipe");
       return;
+    case Option::schema:
+      verb.add_option("WHAT", to.schema,
+                      "recipe; images: a line of manifest/images.jsonl; dataset: "
+                      "manifest/dataset.json")
+          ->required();
+      return;
     case Option::overrides:
       verb.add_option(
               "--set", to.overrides,

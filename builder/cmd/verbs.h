@@ -18,6 +18,7 @@ int run_models(const Arguments& arguments);
 int run_devices(const Arguments& arguments);
 int run_accuracy(const Arguments& arguments);
 int run_import(const Arguments& arguments);
+int run_schema(const Arguments& arguments);
 int run_help(const Arguments& arguments);
 int run_log(const Arguments& arguments);
 

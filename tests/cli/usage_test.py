@@ -85,6 +85,13 @@ class UsageTest(TinyCase):
         self.assertIn("lens_radius_m", camera)
         self.assertNotIn("[engine]", camera)
 
+    def test_shipped_schemas_are_those_it_prints(self):
+        for what in "recipe", "images", "dataset":
+            shipped = self.source / f"recipes/schemas/{what}.schema.json"
+            self.assertEqual(shipped.read_text(), self.run_it("schema", what).out,
+                             f"dsbuild schema {what} > {shipped}")
+        self.assertIn("wanted recipe, images, dataset, got image, did you mean images?", self.run_it("schema", "image").err)
+
     def test_help_of_what_a_recipe_holds(self):
         for section in "dataset", "environments", "camera", "engine", "outputs":
             run = self.run_it("help", section)

@@ -7,11 +7,13 @@ import logging
 import os
 import pathlib
 import sys
+import tomllib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "cli"))
 os.environ["HF_HUB_OFFLINE"] = "1"  # nothing here is to ask a server
 
 import datasets
+import jsonschema
 import mlcroissant
 import numpy
 import pyarrow.parquet as parquet
@@ -135,6 +137,35 @@ class ConsumersTest(TinyCase):
                     numpy.testing.assert_array_equal(numpy.asarray(row[f"images/{kind}"]), self.picture(record, kind))
                 self.assertEqual(numpy.asarray(row["images/camera_to_world"]).tolist(), record["camera_to_world"])
                 self.assertEqual(list(row["images/bbox"]), record["box"])
+
+    def test_schemas(self):
+        def validator(what):
+            schema = json.loads(self.run_it("schema", what).out)
+            jsonschema.Draft202012Validator.check_schema(schema)
+            return jsonschema.Draft202012Validator(schema)
+
+        recipes = validator("recipe")
+        for file in [*self.source.glob("recipes/*.toml"), self.recipe]:
+            recipes.validate(tomllib.loads(file.read_text()))
+        for wrong in ('camera.fov_deg = 180', 'camera.fov = 49', 'camera.distance_m = "fits"', 'engine.spp = 0.5',
+                      'models.up = "x"', 'outputs.planes = "mask"', 'camera.target = [0, 1]', 'dataset.name = ".x"'):
+            self.assertFalse(recipes.is_valid(tomllib.loads(wrong)), wrong)
+        for right in ('camera.distance_m = "fit"', 'models.ground_z_m = false', 'engine.error = 0.02',
+                      'classes.split = { test = 0.25, by = "model" }'):
+            recipes.validate(tomllib.loads(right))
+        (self.tiny / "more.csv").write_text("name,class\nbox,a\n")
+        for more in ([], ["outputs.planes=['mask', 'amodal_mask', 'depth']", f"classes.more=['{self.tiny / 'more.csv'}']",
+                          "dataset.cite='me'", "engine.error=0.5"], ["models.size_m=0.1"]):
+            if "models.size_m=0.1" in more:
+                self.edit("recipe.toml", "fov_deg = 49", 'type = "orthographic"\nextent_m = 0.25')
+            self.build(*[word for one in more for word in ("--set", one)])
+            lines, wanted = validator("images"), {}
+            for line in (self.out / "manifest/images.jsonl").read_text().splitlines():
+                wanted = json.loads(line)
+                lines.validate(wanted)
+            self.assertFalse(lines.is_valid({**wanted, "more": 1}))
+            self.assertFalse(lines.is_valid({**wanted, "class_id": "1"}))
+            validator("dataset").validate(json.loads((self.out / "manifest/dataset.json").read_text()))
 
     def test_webdataset(self):
         self.export("webdataset")

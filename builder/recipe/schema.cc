@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/recipe/schema.h"
+
+#include "builder/recipe/keys.h"
+#include "builder/recipe/value.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace ds {
+namespace {
+
+using nlohmann::json;
+
+json list_of(json items) {
+  return {{"type", "array"}, {"items", std::move(items)}};
+}
+
+json number_in(const char* type, const KeyRange& range) {
+  json schema{{"type", type}};
+  if (std::isfinite(range.least))
+    schema[range.open_least ? "exclusiveMinimum" : "minimum"] = range.least;
+  if (std::isfinite(range.most))
+    schema[range.open_most ? "exclusiveMaximum" : "maximum"] = range.most;
+  return schema;
+}
+
+json point_in(const KeyRange& range) {
+  json point = list_of(number_in("number", range));
+  point["minItems"] = point["maxItems"] = 3;
+  return point;
+}
+
+/// Null for a key that has literals alone.
+json type_schema(const KeySpec& key) {
+  switch (key.type) {
+    case KeyType::text:
+    case KeyType::path:
+      return {{"type", "string"}};
+    case KeyType::name:
+      return {{"type", "string"}, {"pattern", "^[A-Za-z0-9_-][A-Za-z0-9._-]*$"}};
+    case KeyType::path_list:
+    case KeyType::text_list:
+      return list_of({{"type", "string"}, {"minLength", 1}});
+    case KeyType::choice:
+      return nullptr;
+    case KeyType::boolean:
+      return {{"type", "boolean"}};
+    case KeyType::integer:
+      return number_in("integer", key.range);
+    case KeyType::integer_list:
+      return list_of({{"type", "integer"}, {"minimum", 0}});
+    case KeyType::number:
+      return number_in("number", key.range);
+    case KeyType::point:
+      return point_in(key.range);
+    case KeyType::point_list:
+      return list_of(point_in(key.range));
+  }
+  return nullptr;
+}
+
+json to_json(const RecipeValue& value) {
+  if (const auto* text = value.text()) return *text;
+  if (const auto* flag = value.boolean()) return *flag;
+  if (const auto* whole = value.integer()) return *whole;
+  if (value.is_number()) return value.number();
+  json list = json::array();
+  if (const auto* array = value.array())
+    for (const RecipeValue& element : *array)
+      list.push_back(to_json(element));
+  return list;
+}
+
+json literals_of(const KeySpec& key) {
+  json literals = json::array();
+  for (std::string_view rest = key.choices; !rest.empty();) {
+    const std::size_t end = rest.find(" | ");
+    literals.push_back(to_json(parse_value(rest.substr(0, end))));
+    rest.remove_prefix(end == rest.npos ? rest.size() : end + 3);
+  }
+  return literals;
+}
+
+json schema_of(const KeySpec& key) {
+  json schema = type_schema(key);
+  if (const json literals = literals_of(key); !literals.empty()) {
+    const json one{{"enum", literals}};
+    schema = schema.is_null() ? one : json{{"anyOf", {schema, one}}};
+  }
+  std::string text = help_of(key);
+  if (!key.unit.empty()) text += fmt::format(" ({})", key.unit);
+  if (!key.only_with.empty()) text += fmt::format(". Only with {}", key.only_with);
+  schema["description"] = text;
+  if (key.has_default()) schema["default"] = to_json(parse_value(key.default_value));
+  return schema;
+}
+
+/// The section of a key, made where it is not there: camera of camera.fov_deg, classes and split of
+/// classes.split.test.
+json& section_of(json& root, std::string_view& name) {
+  json* at = &root;
+  for (std::size_t dot = name.find('.'); dot != name.npos; dot = name.find('.')) {
+    json& section = (*at)["properties"][std::string(name.substr(0, dot))];
+    if (section.is_null())
+      section = {
+          {"type", "object"}, {"properties", json::object()}, {"additionalProperties", false}};
+    at = &section;
+    name.remove_prefix(dot + 1);
+  }
+  return *at;
+}
+
+}  // namespace
+
+nlohmann::json recipe_schema() {
+  json root{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+            {"title", "A recipe of dsbuild"},
+            {"type", "object"},
+            {"properties", json::object()},
+            {"additionalProperties", false}};
+  for (const KeySpec& key : recipe_keys()) {
+    std::string_view name = key.name;
+    json& section = section_of(root, name);
+    section["properties"][std::string(name)] = schema_of(key);
+  }
+  return root;
+}
+
+}  // namespace ds
