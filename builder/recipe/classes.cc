@@ -47,23 +47,25 @@ std::string some_of(const std::vector<std::string>& names) {
 }
 
 /// An entry that no model uses, since another one means the same file, must not tell something else.
-void refuse_second_labels(const Settings& settings, const Recipe& recipe,
-                          const std::set<std::size_t>& used) {
-  const Labels& labels = recipe.labels;
+void refuse_second_labels(Diagnostics& diagnostics, const Labels& labels,
+                          const std::vector<ModelFile>& models) {
+  std::set<std::size_t> used;
+  for (const ModelFile& model : models)
+    if (const auto entry = labels.find_index(model.name)) used.insert(*entry);
   const auto text = [](const LabelledModel& entry) {
     const auto& [path, split] = entry.label;
     return fmt::format("{} ({}{}{})", entry.model, path, path.empty() || split.empty() ? "" : ", ",
                        split);
   };
-  for (const ModelFile& model : recipe.models) {
+  for (const ModelFile& model : models) {
     const std::vector<std::size_t> entries = labels.find_all(model.name);
     for (std::size_t i = 1; i < entries.size(); ++i) {
       if (used.contains(entries[i]) || labels.label(entries[i]) == labels.label(entries[0]))
         continue;
       const LabelledModel& first = labels.entry(entries[0]);
       const LabelledModel& second = labels.entry(entries[i]);
-      settings.diagnostics().add(second.place, "must list {} once, found {} and, in {}, {}",
-                                 model.name, text(second), to_string(first.place), text(first));
+      diagnostics.add(second.place, "must list {} once, found {} and, in {}, {}", model.name,
+                      text(second), to_string(first.place), text(first));
     }
   }
 }
@@ -111,7 +113,7 @@ void match_labels(const Settings& settings, Recipe& recipe) {
     if (!used.contains(i)) coverage.missing_examples.push_back(recipe.labels.name(i));
   coverage.missing_allowed = settings.given("classes.missing");
   coverage.unlisted_allowed = settings.given("classes.unlisted");
-  refuse_second_labels(settings, recipe, used);
+  refuse_second_labels(settings.diagnostics(), recipe.labels, recipe.models);
   find_ambiguous_entries(recipe);
   const std::string& wanted = settings.text("classes.unlisted");
   if (wanted == "error" && !unlisted.empty()) {
@@ -266,6 +268,8 @@ void read_classes(Settings& settings, Recipe& recipe) {
   for (const auto& file : {recipe.train_classes, recipe.test_classes, recipe.class_table})
     if (file) recipe.class_files.push_back(*file);
   read_hierarchies(settings, recipe);
+  for (const Hierarchy& hierarchy : recipe.hierarchies)
+    refuse_second_labels(settings.diagnostics(), hierarchy.labels, recipe.models);
   read_class_ids(settings, recipe);
 }
 

@@ -173,6 +173,12 @@ class LabelsTest(TinyCase):
         run = self.run_it("plan", self.recipe, "--set", f"classes.more={files}")
         self.assertEqual(run.code, 2, run)
         self.assertRegex(run.err, r"aTest\.cla:4: model box stands in \S+aTrain\.cla:4 already")
+        # By other names, and differently.
+        (self.tiny / "aTest.cla").write_text("PSB 1\n1 1\nsoul 0 1\nbox.off\n")
+        run = self.run_it("plan", self.recipe, "--set", f"classes.more={files}")
+        self.assertEqual(run.code, 2, run)
+        self.assertRegex(run.err, r"aTrain\.cla:4: must list box\.off once, found box \(body\) and, in \S+aTest\.cla:4, "
+                                  r"box\.off \(soul\)")
 
 
 if __name__ == "__main__":

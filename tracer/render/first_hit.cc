@@ -57,7 +57,8 @@ Kernel& Tracer::State::plane_kernel(const std::vector<const PlaneType*>& types) 
   const Program program = device.build(
       planes_program_text(types, features.value_or(Features{})),
       fmt::format("{} -DDS_LANES={}", k_strict_options, plane_lanes()), options.cache_folder);
-  return plane_kernels.emplace_back(types, features, device.kernel(program, "trace_planes")).kernel;
+  plane_kernels.push_back({types, features, device.kernel(program, "trace_planes")});
+  return plane_kernels.back().kernel;
 }
 
 std::vector<Plane> Tracer::State::launch_planes(const DeviceScene& of, const Scene& seen,

@@ -3,6 +3,7 @@
 
 #include "tracer/base/error.h"
 #include "tracer/render/exr_header.h"
+#include "tracer/render/tiff_directory.h"
 
 #include <algorithm>
 #include <array>
@@ -129,7 +130,8 @@ Size radiance_size(std::string_view line) {
 }
 
 /// Radiance's run-length encoding of before 1991 (Ward, "Real Pixels", Graphics Gems II): a pixel 1 1
-/// 1 n repeats the one before. OpenImageIO takes it for pixels as they stand, of which too few follow.
+/// 1 n repeats the one before. OpenImageIO takes it for pixels as they stand: too few, or as many where
+/// each run is of one.
 bool has_old_runs(const View& view) {
   const std::size_t head = view.find("\n\n");
   if (head == std::string_view::npos) return false;
@@ -139,11 +141,18 @@ bool has_old_runs(const View& view) {
   const std::size_t pixels = end + 1;
   const bool new_runs =
       view.byte(pixels) == 2 && view.byte(pixels + 1) == 2 && view.big16(pixels + 2) == size.width;
-  const std::uint64_t whole = (view.size() - pixels) / 4;
-  if (new_runs || size.width == 0 || whole / size.width >= size.height) return false;
-  for (std::size_t at = pixels; at + 4 <= view.size(); at += 4)
-    if (view.byte(at) == 1 && view.byte(at + 1) == 1 && view.byte(at + 2) == 1) return true;
-  return false;
+  if (new_runs || size.width == 0) return false;
+  bool any = false;
+  std::uint64_t meant = 0;  // pixels, where these are runs; of marks in a row each counts for 256 before
+  unsigned shift = 0;
+  for (std::size_t at = pixels; at + 4 <= view.size(); at += 4) {
+    const bool run = view.byte(at) == 1 && view.byte(at + 1) == 1 && view.byte(at + 2) == 1;
+    any = any || run;
+    meant += run ? std::uint64_t{view.byte(at + 3)} << std::min(shift, 32U) : 1;
+    shift = run ? shift + 8 : 0;
+  }
+  const bool too_few = (view.size() - pixels) / 4 / size.width < size.height;
+  return any && (too_few || meant == size.width * size.height);
 }
 
 }  // namespace
@@ -174,6 +183,7 @@ std::string check_image_claims(std::span<const std::byte> bytes, const std::stri
         "{}: its pixels are in Radiance's old run-length encoding, which is not supported: ra_xyze "
         "-r, of Radiance, writes it anew",
         name);
+  if (format == "tiff") check_tiff(bytes, name);
   if (format == "png") check(png_size(view));
   if (format == "webp") check(webp_size(view));
   if (format == "jpeg") {

@@ -88,6 +88,31 @@ OIIO::ImageSpec reading_options() {
   return options;
 }
 
+/// Colours that the library multiplied by alpha though it was asked not to, or that the file has so.
+bool is_premultiplied(const OIIO::ImageInput& input, const OIIO::ImageSpec& spec) {
+  const std::string_view format = input.format_name();
+  const bool tells = format == "tiff" || format == "targa" || format == "webp";
+  return tells && spec.alpha_channel >= 0 &&
+         spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
+}
+
+/// Of Radiance files whose lines run up or down the library takes those from the left for those from
+/// the right, and the other way round: "+X N +Y M" begins at the left bottom.
+int orientation_of(const OIIO::ImageInput& input, const OIIO::ImageSpec& spec) {
+  const int orientation = spec.get_int_attribute("Orientation", 1);
+  if (std::string_view(input.format_name()) != "hdr") return orientation;
+  return orientation == 6 ? 8 : orientation == 8 ? 6 : orientation;
+}
+
+/// The library has such files made 8 bits, by their square root.
+void refuse_log_luminance(const OIIO::ImageSpec& spec, const std::string& name) {
+  constexpr int k_log_l = 32844, k_log_luv = 32845;
+  const int meaning = spec.get_int_attribute("tiff:PhotometricInterpretation", 0);
+  if (meaning == k_log_l || meaning == k_log_luv)
+    fail(ErrorKind::asset,
+         "{}: its colours are LogLuv, which is not supported: save it as float RGB, or as EXR", name);
+}
+
 /// The library takes memory for 64 rows at least: 128 MiB of four floats a pixel.
 constexpr int k_most_width = 1 << 17;
 
@@ -95,6 +120,7 @@ constexpr int k_most_width = 1 << 17;
 DecodedImage decode(OIIO::ImageInput& input, const std::string& name, Halves halves,
                     std::size_t file_bytes) {
   const OIIO::ImageSpec spec = input.spec();
+  refuse_log_luminance(spec, name);
   const std::uint64_t most = believable_pixels(file_bytes);
   const auto believable = [&](int width, int height) {
     const auto w = static_cast<std::uint64_t>(width), h = static_cast<std::uint64_t>(height);
@@ -122,7 +148,8 @@ DecodedImage decode(OIIO::ImageInput& input, const std::string& name, Halves hal
   decoded.alpha_channel = spec.alpha_channel < channels ? spec.alpha_channel : -1;
   decoded.type = *type;
   decoded.channel_names = spec.channelnames;
-  decoded.orientation = spec.get_int_attribute("Orientation", 1);
+  decoded.orientation = orientation_of(input, spec);
+  decoded.premultiplied = is_premultiplied(input, spec);
   if (halves == Halves::widen && decoded.type == SampleType::half)
     decoded.type = SampleType::float32;
   const OIIO::TypeDesc format = library_type(decoded.type);

@@ -24,6 +24,7 @@ struct DecodedImage {
   int width = 0, height = 0;
   int channels = 0;        ///< at most 4
   int alpha_channel = -1;  ///< -1: none
+  bool premultiplied = false;  ///< of others than EXR: colours come multiplied by alpha
   SampleType type = SampleType::uint8;
   std::vector<std::byte> samples;
   std::vector<std::string> channel_names;  ///< of all the file's; the first `channels` are here

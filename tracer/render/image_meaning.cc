@@ -252,6 +252,7 @@ ImageMeaning image_meaning(std::span<const std::byte> bytes, const DecodedImage&
     return meaning;
   }
   meaning.color_channels = decoded.channels - (decoded.alpha_channel >= 0 ? 1 : 0);
+  meaning.premultiplied = decoded.premultiplied;
   if (meaning.color_channels == 2 || decoded.channel_names.size() > 4)
     fail(ErrorKind::asset, "{}: wanted 1 to 4 channels, grey or colour, found {}", name,
          fmt::join(decoded.channel_names, ", "));

@@ -42,8 +42,8 @@ struct ImageMeaning {
 
 /// EXR: the display window is the picture, the data window what is stored of it; channels by their
 /// names (R, G, B or Y, with or without A; one of any other name is grey; what shares one layer's
-/// name loses that); colours are multiplied by alpha; chromaticities. Radiance HDR: PRIMARIES.
-/// Others: what the reader found. Exif's orientation for all but EXR. Throws Error(asset) with
+/// name loses that); colours are multiplied by alpha, as those of some TIFF, TGA and WebP files;
+/// chromaticities. Radiance HDR: PRIMARIES. Others: what the reader found. Exif's orientation for all but EXR. Throws Error(asset) with
 /// `name` for what makes no picture: two of three colours, luminance and chroma, alpha and depth,
 /// primaries that span no colours.
 ImageMeaning image_meaning(std::span<const std::byte> bytes, const DecodedImage& decoded,

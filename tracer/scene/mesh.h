@@ -203,7 +203,7 @@ std::string to_text(const MendedDamage& damage);
 
 /// Raised when reading makes another mesh or report of some file: what was found out about files
 /// before counts no more.
-inline constexpr int k_mesh_reader_version = 10;
+inline constexpr int k_mesh_reader_version = 11;
 
 /// A mesh as its file describes it, before normalisation.
 struct Model {

@@ -92,7 +92,7 @@ bool floats_hold(const Polygons& polygons, const std::vector<char>& usable) {
 
 /// The triangles of all faces whose corners exist and are usable.
 std::vector<Triangle> triangulate_usable(const Polygons& polygons, const std::vector<char>& usable,
-                                         MeshReport& report) {
+                                         const std::string& name, MeshReport& report) {
   std::vector<Triangle> triangles;
   triangles.reserve(report.triangles);
   Triangulator triangulator;
@@ -101,8 +101,12 @@ std::vector<Triangle> triangulate_usable(const Polygons& polygons, const std::ve
     if (face.size() < 3) continue;
     if (std::any_of(face.begin(), face.end(), [&](auto v) { return v >= usable.size(); }))
       ++report.out_of_range;
-    else if (std::all_of(face.begin(), face.end(), [&](auto v) { return usable[v] != 0; }))
-      triangulator.triangulate(polygons.positions, face, triangles);
+    else if (std::all_of(face.begin(), face.end(), [&](auto v) { return usable[v] != 0; }) &&
+             !triangulator.triangulate(polygons.positions, face, triangles))
+      fail(ErrorKind::asset,
+           "{}: face {} (from 0) of {} corners would take too long to be cut into triangles: let what "
+           "wrote it cut its faces",
+           name, i, face.size());
   }
   return triangles;
 }
@@ -266,7 +270,7 @@ Model mend(Polygons polygons, const std::string& name, Winding winding) {
     for (Vec3d& p : polygons.positions)
       p = to_double(to_mesh_floats(p));
   FileMesh& mesh = model.mesh;
-  mesh.triangles = triangulate_usable(polygons, usable, report);
+  mesh.triangles = triangulate_usable(polygons, usable, name, report);
   mesh.positions = std::move(polygons.positions);
   mesh.normals = std::move(polygons.normals);
   mesh.uvs = std::move(polygons.uvs);

@@ -10,6 +10,9 @@
 namespace ds {
 namespace {
 
+/// How little is asked of an ear: see is_ear.
+constexpr int k_no_area = 1, k_any_corner = 3;
+
 /// Twice the area vector of a polygon (Newell), about its first corner so that a far polygon keeps
 /// its digits.
 Vec3d area_vector(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon) {
@@ -22,25 +25,26 @@ Vec3d area_vector(std::span<const Vec3d> positions, std::span<const std::uint32_
 
 }  // namespace
 
-void Triangulator::triangulate(std::span<const Vec3d> positions,
+bool Triangulator::triangulate(std::span<const Vec3d> positions,
                                std::span<const std::uint32_t> polygon,
                                std::vector<std::array<std::uint32_t, 3>>& out) {
   DS_ASSERT(polygon.size() >= 3);
   if (polygon.size() == 3) {
     out.push_back({polygon[0], polygon[1], polygon[2]});
-    return;
+    return true;
   }
   // A polygon without an area vector has no inside to keep to; a fan is as good as any.
   if (!project(positions, polygon) || is_strictly_convex()) {
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
       out.push_back({polygon[0], polygon[i], polygon[i + 1]});
-    return;
+    return true;
   }
   build_grid();
   local_.clear();
-  clip_ears(local_);
+  if (!clip_ears(local_)) return false;
   for (const auto& [a, b, c] : local_)
     out.push_back({polygon[a], polygon[b], polygon[c]});
+  return true;
 }
 
 /// Fills points_, counter-clockwise as a whole. False where the area vector is zero.
@@ -108,7 +112,8 @@ std::size_t Triangulator::cell_of(double value, double least, double cells_per_u
   return cell < static_cast<double>(grid_side_) ? static_cast<std::size_t>(cell) : grid_side_ - 1;
 }
 
-void Triangulator::clip_ears(std::vector<std::array<Corner, 3>>& out) {
+/// False where it takes too long.
+bool Triangulator::clip_ears(std::vector<std::array<Corner, 3>>& out) {
   const auto n = static_cast<Corner>(points_.size());
   next_.resize(n);
   previous_.resize(n);
@@ -117,34 +122,62 @@ void Triangulator::clip_ears(std::vector<std::array<Corner, 3>>& out) {
     next_[i] = i + 1 == n ? 0 : i + 1;
     previous_[i] = i == 0 ? n - 1 : i - 1;
   }
+  may_block_.assign(n, 0);
+  left_ = n;
   for (Corner i = 0; i < n; ++i)
     update_reflex(i);
+  Corner corner = 0;
+  for (Corner i = 0; i < n; ++i)
+    if (next_[i] != i && is_spike(i)) corner = cut_off(i, out);
 
-  constexpr int k_any_corner = 2;
+  looks_ = 0;
   int strictness = 0;
-  Corner corner = 0, tried = 0;
-  for (Corner left = n; left > 3;) {
+  for (Corner tried = 0; left_ > 3;) {
+    if (looks_ > k_most_looks) return false;
     if (!is_ear(corner, strictness)) {
       corner = next_[corner];
-      if (++tried == left) {
+      if (++tried == left_) {
         DS_ASSERT(strictness < k_any_corner);
         ++strictness;
         tried = 0;
       }
       continue;
     }
+    // Not the next one: ears in turn make better shapes than a fan.
+    corner = next_[cut_off(corner, out)];
+    tried = 0;
+    if (strictness == k_no_area) strictness = 0;  // what it stood before may be an ear
+  }
+  out.push_back({previous_[corner], corner, next_[corner]});
+  return true;
+}
+
+/// Whether the way goes to the corner and straight back, or stays where it is.
+bool Triangulator::is_spike(Corner corner) const {
+  const Point a = points_[previous_[corner]], b = points_[corner], c = points_[next_[corner]];
+  return left_ > 3 && turn(a, b, c) == 0 &&
+         (a == b || b == c || (a.x - b.x) * (c.x - b.x) + (a.y - b.y) * (c.y - b.y) > 0);
+}
+
+/// And the spikes that this makes of its neighbours; returns the corner behind what was cut off.
+Triangulator::Corner Triangulator::cut_off(Corner corner, std::vector<std::array<Corner, 3>>& out) {
+  for (;;) {
     const Corner before = previous_[corner], after = next_[corner];
     out.push_back({before, corner, after});
     next_[before] = after;
     previous_[after] = before;
+    next_[corner] = corner;  // it is gone
     may_block_[corner] = 0;
+    --left_;
     update_reflex(before);
     update_reflex(after);
-    --left;
-    tried = 0;
-    corner = next_[after];  // not `after`: ears in turn make better shapes than a fan
+    if (is_spike(before))
+      corner = before;
+    else if (is_spike(after))
+      corner = after;
+    else
+      return after;
   }
-  out.push_back({previous_[corner], corner, next_[corner]});
 }
 
 void Triangulator::update_reflex(Corner corner) {
@@ -152,11 +185,14 @@ void Triangulator::update_reflex(Corner corner) {
   may_block_[corner] = left > 0 ? 0 : 1;
 }
 
-/// `strictness` 0: no other corner on or in the triangle; 1: none in it; 2: any corner will do.
+/// `strictness` 0: no other corner on or in the triangle; k_no_area: a triangle without area; 2: no
+/// corner in it; k_any_corner.
 bool Triangulator::is_ear(Corner corner, int strictness) const {
-  if (strictness == 2) return true;
-  if (may_block_[corner]) return false;
+  ++looks_;
+  if (strictness == k_any_corner) return true;
   const Point a = points_[previous_[corner]], b = points_[corner], c = points_[next_[corner]];
+  if (strictness == k_no_area) return turn(a, b, c) == 0;
+  if (may_block_[corner]) return false;
   const auto [x0, x1] = std::minmax({a.x, b.x, c.x});
   const auto [y0, y1] = std::minmax({a.y, b.y, c.y});
   const std::size_t cx0 = cell_of(x0, grid_least_.x, grid_cells_per_unit_.x);
@@ -166,18 +202,32 @@ bool Triangulator::is_ear(Corner corner, int strictness) const {
   for (std::size_t cy = cy0; cy <= cy1; ++cy) {
     // The cells of one row are neighbours in the list too.
     const std::size_t row = cy * grid_side_;
+    looks_ += 1 + cell_starts_[row + cx1 + 1] - cell_starts_[row + cx0];
     for (std::uint32_t i = cell_starts_[row + cx0]; i < cell_starts_[row + cx1 + 1]; ++i)
       if (blocks(cell_corners_[i], a, b, c, strictness)) return false;
   }
   return true;
 }
 
+/// Whether an edge of the corner, which stands at `at`, leads into the ear there, between its edges to
+/// `right` and `left`.
+bool Triangulator::enters(Corner corner, Point at, Point right, Point left) const {
+  for (const Corner other : {previous_[corner], next_[corner]}) {
+    const Point to = points_[other];
+    if (turn(at, right, to) > 0 && turn(at, to, left) > 0) return true;
+  }
+  return false;
+}
+
 /// Whether a corner lies in the way of cutting off the ear abc. A corner at the place of one of the
-/// three does not: polygons with a hole are written with a slit whose corners occur twice.
+/// three does where its edges lead into the ear: polygons with a hole are written with a slit whose
+/// corners occur twice, and others touch themselves in a corner.
 bool Triangulator::blocks(Corner corner, Point a, Point b, Point c, int strictness) const {
   if (!may_block_[corner]) return false;
   const Point p = points_[corner];
-  if (p == a || p == b || p == c) return false;
+  if (p == a) return enters(corner, a, b, c);
+  if (p == b) return enters(corner, b, c, a);
+  if (p == c) return enters(corner, c, a, b);
   const double ab = turn(a, b, p), bc = turn(b, c, p), ca = turn(c, a, p);
   return strictness == 0 ? ab >= 0 && bc >= 0 && ca >= 0 : ab > 0 && bc > 0 && ca > 0;
 }

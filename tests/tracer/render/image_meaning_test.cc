@@ -13,7 +13,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ds {
@@ -283,6 +285,84 @@ TEST_F(Meaning, OrientationTurnsThePicture) {
   }
 }
 
+TEST_F(Meaning, RadiancesLinesRunAnyWay) {
+  // Of "-Y 2 +X 3" the first word is what lines count and the second what pixels in a line do: +X is to
+  // the right, +Y up (Radiance's file formats). Pixel k of the file has the grey k + 1.
+  for (const std::string lines : {"-Y", "+Y", "-X", "+X"})
+    for (const std::string pixels : {"-Y", "+Y", "-X", "+X"}) {
+      if (lines[1] == pixels[1]) continue;
+      const auto length = [](const std::string& axis) { return axis[1] == 'X' ? 3 : 2; };
+      std::string file = fmt::format("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n{} {} {} {}\n", lines,
+                                     length(lines), pixels, length(pixels));
+      for (int k = 0; k < 6; ++k) {
+        const char mantissa = static_cast<char>(128 + 8 * k);
+        file += {mantissa, mantissa, mantissa, static_cast<char>(136)};
+      }
+      const Image image = loaded(file, "a.hdr");
+      ASSERT_EQ(image.width, 3) << lines << pixels;
+      ASSERT_EQ(image.height, 2) << lines << pixels;
+      for (int k = 0; k < 6; ++k) {
+        int x = 0, y = 0;
+        for (const auto& [axis, step] : {std::pair(lines, k / length(pixels)), std::pair(pixels, k % length(pixels))}) {
+          if (axis[1] == 'X') x = axis[0] == '+' ? step : 2 - step;
+          if (axis[1] == 'Y') y = axis[0] == '-' ? step : 1 - step;
+        }
+        EXPECT_NEAR(at(image, x, y), 128 + 8 * k, 1) << lines << pixels << k;
+      }
+    }
+}
+
+/// Little-endian TIFF of one strip; `entries` are tag, type, count and value or place.
+std::string tiff(const std::vector<std::array<std::uint32_t, 4>>& entries, const std::string& pixels) {
+  std::string file = "II*";
+  const auto put = [&](std::uint32_t value, int width) {
+    for (int i = 0; i < width; ++i)
+      file += static_cast<char>(value >> (8 * i));
+  };
+  file += '\0';
+  put(8, 4);
+  put(static_cast<std::uint32_t>(entries.size()), 2);
+  for (const auto& [tag, type, count, value] : entries) {
+    put(tag, 2);
+    put(type, 2);
+    put(count, 4);
+    put(value, 4);
+  }
+  put(0, 4);
+  file.resize(512, '\0');
+  return file + pixels;
+}
+
+/// One row of two pixels of `samples` bytes each.
+std::vector<std::array<std::uint32_t, 4>> tiff_entries(std::uint32_t samples, std::uint32_t photometric) {
+  return {{256, 3, 1, 2}, {257, 3, 1, 1}, {258, 3, 1, 8}, {259, 3, 1, 1}, {262, 3, 1, photometric},
+          {273, 4, 1, 512}, {277, 3, 1, samples}, {278, 3, 1, 1}, {279, 4, 1, 2 * samples}};
+}
+
+TEST_F(Meaning, ColoursThatATiffMultipliesByAlphaAreDivided) {
+  auto entries = tiff_entries(2, 1);  // grey and alpha
+  entries.push_back({338, 3, 1, 1});  // associated: TIFF 6.0, ExtraSamples
+  const std::string pixels = {60, static_cast<char>(120), 60, static_cast<char>(240)};
+  const Image associated = loaded(tiff(entries, pixels), "a.tif");
+  EXPECT_FLOAT_EQ(at(associated, 0, 0), 0.5f);
+  EXPECT_FLOAT_EQ(at(associated, 1, 0), 0.25f);
+  entries.back()[3] = 2;  // unassociated
+  const Image straight = loaded(tiff(entries, pixels), "b.tif");
+  EXPECT_FLOAT_EQ(at(straight, 0, 0), 60 / 255.0f);
+  EXPECT_FLOAT_EQ(at(straight, 1, 0), 60 / 255.0f);
+}
+
+TEST_F(Meaning, WhatATiffFileLacksOrMeansIsNamed) {
+  const std::string pixels = {10, 20, 30, 40, 50, 60};
+  EXPECT_NEAR(at(loaded(tiff(tiff_entries(3, 2), pixels), "a.tif"), 1, 0), 40 / 255.0f, 1e-6f);
+  auto without_bits = tiff_entries(3, 2);
+  without_bits.erase(without_bits.begin() + 2);
+  EXPECT_THAT(error_of(tiff(without_bits, pixels), "a.tif"), HasSubstr("states no bits a sample"));
+  EXPECT_THAT(error_of(tiff(tiff_entries(3, 2), pixels.substr(1)), "a.tif"),
+              HasSubstr("the TIFF file is cut off: pixels at byte 512 to 518 of 517"));
+  EXPECT_THAT(error_of(tiff(tiff_entries(3, 32845), pixels), "a.tif"), HasSubstr("LogLuv"));
+}
+
 TEST_F(Meaning, ACutJpegIsAnError) {
   const std::string whole = jpeg(1);
   EXPECT_THAT(error_of(whole.substr(0, whole.size() / 2), "a.jpg"), HasSubstr("cut off"));
@@ -295,6 +375,8 @@ TEST_F(Meaning, RadiancesOldRunsAreNamed) {
   EXPECT_THAT(error_of(old + "\x01\x01\x01\x03", "a.hdr"),
               HasSubstr("a.hdr: its pixels are in Radiance's old run-length encoding"));
   EXPECT_THAT(error_of(old, "a.hdr"), Not(HasSubstr("old run-length"))) << "cut off";
+  const std::string pair = "\x80\x80\x80\x81\x01\x01\x01\x01";  // of two pixels each: as many as there are
+  EXPECT_THAT(error_of(old.substr(0, old.size() - 4) + pair + pair, "a.hdr"), HasSubstr("old run-length"));
   loaded(old + "\x01\x01\x01\x03\x80\x80\x80\x81\x80\x80\x80\x81", "whole.hdr");
 }
 

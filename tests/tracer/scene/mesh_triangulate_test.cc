@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -22,7 +23,7 @@ std::vector<std::uint32_t> in_order(std::size_t n) {
 
 Triangles cut(const std::vector<Vec3d>& positions) {
   Triangles out;
-  Triangulator().triangulate(positions, in_order(positions.size()), out);
+  EXPECT_TRUE(Triangulator().triangulate(positions, in_order(positions.size()), out));
   EXPECT_EQ(out.size(), positions.size() - 2);
   return out;
 }
@@ -174,6 +175,56 @@ TEST(Triangulator, ScribblesEndSoon) {
   for (int i = 0; i < 5000; ++i)
     scribble.push_back({next(), next(), next()});
   EXPECT_EQ(cut(scribble), cut(scribble));
+}
+
+/// From whichever corner it is written.
+void expect_covers_from_each_corner(std::vector<Vec3d> polygon) {
+  for (std::size_t first = 0; first < polygon.size(); ++first) {
+    SCOPED_TRACE(first);
+    expect_covers(polygon, cut(polygon), false);
+    std::rotate(polygon.begin(), polygon.begin() + 1, polygon.end());
+  }
+}
+
+TEST(Triangulator, CoversPolygonsThatTouchThemselvesInACorner) {
+  // Two squares, three squares about one corner, and a hole that touches the outline.
+  expect_covers_from_each_corner({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0},
+                                  {1, 1, 0}, {0, 1, 0}});
+  expect_covers_from_each_corner({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 0.5, 0}, {2, 0.5, 0}, {2, 1, 0},
+                                  {1, 1, 0}, {2, 1.5, 0}, {2, 2, 0}, {1, 2, 0}, {1, 1, 0}, {0, 1, 0}});
+  expect_covers_from_each_corner({{0, 0, 0}, {6, 0, 0}, {6, 6, 0}, {3, 6, 0}, {2, 3, 0}, {4, 3, 0},
+                                  {3, 6, 0}, {0, 6, 0}});
+}
+
+TEST(Triangulator, CoversPolygonsWithCornersTwiceAndSpikes) {
+  std::vector<Vec3d> twice;
+  for (const Vec3d p : {Vec3d{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {2, 2, 0}, {2, 4, 0}, {0, 4, 0}})
+    twice.insert(twice.end(), 2, p);
+  expect_covers_from_each_corner(twice);
+  // A spike without width on the outside of an L, and one from each of three sides of a square.
+  expect_covers_from_each_corner({{0, 0, 0}, {4, 0, 0}, {4, 1, 0}, {7, 1, 0}, {4, 1, 0}, {4, 2, 0},
+                                  {2, 2, 0}, {2, 4, 0}, {0, 4, 0}});
+  expect_covers_from_each_corner({{0, 0, 0}, {2, 0, 0}, {2, -3, 0}, {2, 0, 0}, {4, 0, 0}, {4, 2, 0},
+                                  {7, 2, 0}, {4, 2, 0}, {4, 4, 0}, {2, 4, 0}, {2, 7, 0}, {2, 4, 0},
+                                  {0, 4, 0}});
+}
+
+TEST(Triangulator, RefusesWhatWouldTakeMinutes) {
+  std::vector<Vec3d> comb{{0, -1, 0}};
+  for (int tooth = 0; tooth < 300'000; ++tooth) {
+    comb.push_back({2.0 * tooth, 0, 0});
+    comb.push_back({2.0 * tooth + 1, 1, 0});
+  }
+  std::reverse(comb.begin() + 1, comb.end());
+  Triangles out;
+  EXPECT_FALSE(Triangulator().triangulate(comb, in_order(comb.size()), out));
+  EXPECT_TRUE(out.empty());
+}
+
+TEST(Triangulator, ManyCornersInOnePlaceTakeNoTime) {
+  std::vector<Vec3d> polygon{{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}};
+  polygon.insert(polygon.begin() + 1, 200'000, {4, 0, 0});
+  expect_covers(polygon, cut(polygon), false);
 }
 
 }  // namespace
