@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tracer/base/log.h"
 #include "tracer/scene/sdl_node.h"
 
 #include <algorithm>
@@ -103,7 +104,7 @@ std::vector<SdlParameter> image_parameters() {
        "values are raised to it; an EXR or HDR file's are linear and need none", k_positive},
       choice_parameter("colorspace", "nop: values are linear, whatever the gamma", k_color_spaces),
       choice_parameter("wrap", "what is outside of the image", k_wraps),
-      choice_parameter("filter", "between texels", k_filters),
+      choice_parameter("filter", "between texels; of light always linear", k_filters),
       choice_parameter("channel", "which of the image's channels are taken", k_channels),
       choice_parameter("storage", "LuxCore's; no effect", k_storages)};
 }
@@ -119,6 +120,9 @@ int read_image(const SdlNode& node, double gain, ImageUse use) {
   image.gamma = read_gamma(node, image.file);
   image.wrap = choose(node, "wrap", k_wraps);
   image.filter = choose(node, "filter", k_filters);
+  if (use == ImageUse::light && image.filter == ImageFilter::nearest)
+    warn(fmt::format("{}: filter = nearest has no effect on light: it is interpolated",
+                     to_string(node.place("filter"))));
   image.channel = choose(node, "channel", k_channels);
   choose(node, "storage", k_storages);
   if (!file) return -1;
