@@ -131,8 +131,10 @@ void add_patches(Scene& scene, const Mesh& mesh, const std::vector<int>& materia
 std::vector<int> add_white_materials(Scene& scene, float u_roughness, float v_roughness) {
   std::vector<int> added;
   const std::size_t before = scene.materials.size();
-  for (const std::string& name : materials(false))
-    added.push_back(add_material(scene, name));
+  for (const std::string& name : materials(false)) {
+    // A layer of fibres over black gives back a part of the light whatever its colour.
+    if (name != "velvet") added.push_back(add_material(scene, name));
+  }
   for (std::size_t i = before; i < scene.materials.size(); ++i) {
     const NodeType& type = material_types()[static_cast<std::size_t>(scene.materials[i].type)];
     // n = 0 makes a metal's reflectance 1.

@@ -143,7 +143,8 @@ bool has_old_runs(const View& view) {
       view.byte(pixels) == 2 && view.byte(pixels + 1) == 2 && view.big16(pixels + 2) == size.width;
   if (new_runs || size.width == 0) return false;
   bool any = false;
-  std::uint64_t meant = 0;  // pixels, where these are runs; of marks in a row each counts for 256 before
+  std::uint64_t meant =
+      0;  // pixels, where these are runs; of marks in a row each counts for 256 before
   unsigned shift = 0;
   for (std::size_t at = pixels; at + 4 <= view.size(); at += 4) {
     const bool run = view.byte(at) == 1 && view.byte(at + 1) == 1 && view.byte(at + 2) == 1;

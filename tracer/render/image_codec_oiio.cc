@@ -110,7 +110,8 @@ void refuse_log_luminance(const OIIO::ImageSpec& spec, const std::string& name) 
   const int meaning = spec.get_int_attribute("tiff:PhotometricInterpretation", 0);
   if (meaning == k_log_l || meaning == k_log_luv)
     fail(ErrorKind::asset,
-         "{}: its colours are LogLuv, which is not supported: save it as float RGB, or as EXR", name);
+         "{}: its colours are LogLuv, which is not supported: save it as float RGB, or as EXR",
+         name);
 }
 
 /// The library takes memory for 64 rows at least: 128 MiB of four floats a pixel.

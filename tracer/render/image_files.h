@@ -22,8 +22,8 @@ inline constexpr const char* sample_type_name(SampleType type) {
 /// machine byte order.
 struct DecodedImage {
   int width = 0, height = 0;
-  int channels = 0;        ///< at most 4
-  int alpha_channel = -1;  ///< -1: none
+  int channels = 0;            ///< at most 4
+  int alpha_channel = -1;      ///< -1: none
   bool premultiplied = false;  ///< of others than EXR: colours come multiplied by alpha
   SampleType type = SampleType::uint8;
   std::vector<std::byte> samples;

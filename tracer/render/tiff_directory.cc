@@ -79,14 +79,16 @@ void check_tiff(std::span<const std::byte> bytes, const std::string& name) {
   };
   if (!entries.empty() && !entries.contains(k_bits))
     fail(ErrorKind::asset,
-         "{}: a TIFF file that states no bits a sample has 1, which is not supported: save it with 8",
+         "{}: a TIFF file that states no bits a sample has 1, which is not supported: save it with "
+         "8",
          name);
   for (const auto& [starts, counts] :
        {std::pair(of(k_strips), of(k_strip_bytes)), std::pair(of(k_tiles), of(k_tile_bytes))})
     for (std::size_t i = 0; i < std::min(starts.size(), counts.size()); ++i)
       if (starts[i] > tiff.size() || counts[i] > tiff.size() - starts[i])
         fail(ErrorKind::asset,
-             "{}: cannot be read as an image: the TIFF file is cut off: pixels at byte {} to {} of {}",
+             "{}: cannot be read as an image: the TIFF file is cut off: pixels at byte {} to {} of "
+             "{}",
              name, starts[i], starts[i] + counts[i], tiff.size());
 }
 

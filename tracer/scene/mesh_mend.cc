@@ -104,7 +104,8 @@ std::vector<Triangle> triangulate_usable(const Polygons& polygons, const std::ve
     else if (std::all_of(face.begin(), face.end(), [&](auto v) { return usable[v] != 0; }) &&
              !triangulator.triangulate(polygons.positions, face, triangles))
       fail(ErrorKind::asset,
-           "{}: face {} (from 0) of {} corners would take too long to be cut into triangles: let what "
+           "{}: face {} (from 0) of {} corners would take too long to be cut into triangles: let "
+           "what "
            "wrote it cut its faces",
            name, i, face.size());
   }

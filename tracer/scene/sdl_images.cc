@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <string_view>
 
 namespace ds {
 namespace {
@@ -56,14 +54,7 @@ constexpr Choice<Storage> k_storages[] = {{"auto", Storage::any},
                                           {"half", Storage::any},
                                           {"float", Storage::any}};
 
-/// By its first bytes, as it will be read; by its name where it cannot be.
 bool is_hdr(const std::filesystem::path& file) {
-  std::array<char, 4> head{};
-  if (std::ifstream(file, std::ios::binary).read(head.data(), head.size())) {
-    const std::string_view text(head.data(), head.size());
-    return text == "\x76\x2f\x31\x01" || text.starts_with("#?") || text.starts_with("PF") ||
-           text.starts_with("Pf");
-  }
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;

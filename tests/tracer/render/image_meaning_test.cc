@@ -303,7 +303,8 @@ TEST_F(Meaning, RadiancesLinesRunAnyWay) {
       ASSERT_EQ(image.height, 2) << lines << pixels;
       for (int k = 0; k < 6; ++k) {
         int x = 0, y = 0;
-        for (const auto& [axis, step] : {std::pair(lines, k / length(pixels)), std::pair(pixels, k % length(pixels))}) {
+        for (const auto& [axis, step] :
+             {std::pair(lines, k / length(pixels)), std::pair(pixels, k % length(pixels))}) {
           if (axis[1] == 'X') x = axis[0] == '+' ? step : 2 - step;
           if (axis[1] == 'Y') y = axis[0] == '-' ? step : 1 - step;
         }
@@ -313,7 +314,8 @@ TEST_F(Meaning, RadiancesLinesRunAnyWay) {
 }
 
 /// Little-endian TIFF of one strip; `entries` are tag, type, count and value or place.
-std::string tiff(const std::vector<std::array<std::uint32_t, 4>>& entries, const std::string& pixels) {
+std::string tiff(const std::vector<std::array<std::uint32_t, 4>>& entries,
+                 const std::string& pixels) {
   std::string file = "II*";
   const auto put = [&](std::uint32_t value, int width) {
     for (int i = 0; i < width; ++i)
@@ -334,9 +336,11 @@ std::string tiff(const std::vector<std::array<std::uint32_t, 4>>& entries, const
 }
 
 /// One row of two pixels of `samples` bytes each.
-std::vector<std::array<std::uint32_t, 4>> tiff_entries(std::uint32_t samples, std::uint32_t photometric) {
-  return {{256, 3, 1, 2}, {257, 3, 1, 1}, {258, 3, 1, 8}, {259, 3, 1, 1}, {262, 3, 1, photometric},
-          {273, 4, 1, 512}, {277, 3, 1, samples}, {278, 3, 1, 1}, {279, 4, 1, 2 * samples}};
+std::vector<std::array<std::uint32_t, 4>> tiff_entries(std::uint32_t samples,
+                                                       std::uint32_t photometric) {
+  return {{256, 3, 1, 2},       {257, 3, 1, 1},           {258, 3, 1, 8},
+          {259, 3, 1, 1},       {262, 3, 1, photometric}, {273, 4, 1, 512},
+          {277, 3, 1, samples}, {278, 3, 1, 1},           {279, 4, 1, 2 * samples}};
 }
 
 TEST_F(Meaning, ColoursThatATiffMultipliesByAlphaAreDivided) {
@@ -375,8 +379,10 @@ TEST_F(Meaning, RadiancesOldRunsAreNamed) {
   EXPECT_THAT(error_of(old + "\x01\x01\x01\x03", "a.hdr"),
               HasSubstr("a.hdr: its pixels are in Radiance's old run-length encoding"));
   EXPECT_THAT(error_of(old, "a.hdr"), Not(HasSubstr("old run-length"))) << "cut off";
-  const std::string pair = "\x80\x80\x80\x81\x01\x01\x01\x01";  // of two pixels each: as many as there are
-  EXPECT_THAT(error_of(old.substr(0, old.size() - 4) + pair + pair, "a.hdr"), HasSubstr("old run-length"));
+  const std::string pair =
+      "\x80\x80\x80\x81\x01\x01\x01\x01";  // of two pixels each: as many as there are
+  EXPECT_THAT(error_of(old.substr(0, old.size() - 4) + pair + pair, "a.hdr"),
+              HasSubstr("old run-length"));
   loaded(old + "\x01\x01\x01\x03\x80\x80\x80\x81\x80\x80\x80\x81", "whole.hdr");
 }
 

@@ -188,12 +188,22 @@ void expect_covers_from_each_corner(std::vector<Vec3d> polygon) {
 
 TEST(Triangulator, CoversPolygonsThatTouchThemselvesInACorner) {
   // Two squares, three squares about one corner, and a hole that touches the outline.
-  expect_covers_from_each_corner({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0},
-                                  {1, 1, 0}, {0, 1, 0}});
-  expect_covers_from_each_corner({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 0.5, 0}, {2, 0.5, 0}, {2, 1, 0},
-                                  {1, 1, 0}, {2, 1.5, 0}, {2, 2, 0}, {1, 2, 0}, {1, 1, 0}, {0, 1, 0}});
-  expect_covers_from_each_corner({{0, 0, 0}, {6, 0, 0}, {6, 6, 0}, {3, 6, 0}, {2, 3, 0}, {4, 3, 0},
-                                  {3, 6, 0}, {0, 6, 0}});
+  expect_covers_from_each_corner(
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}, {1, 1, 0}, {0, 1, 0}});
+  expect_covers_from_each_corner({{0, 0, 0},
+                                  {1, 0, 0},
+                                  {1, 1, 0},
+                                  {1, 0.5, 0},
+                                  {2, 0.5, 0},
+                                  {2, 1, 0},
+                                  {1, 1, 0},
+                                  {2, 1.5, 0},
+                                  {2, 2, 0},
+                                  {1, 2, 0},
+                                  {1, 1, 0},
+                                  {0, 1, 0}});
+  expect_covers_from_each_corner(
+      {{0, 0, 0}, {6, 0, 0}, {6, 6, 0}, {3, 6, 0}, {2, 3, 0}, {4, 3, 0}, {3, 6, 0}, {0, 6, 0}});
 }
 
 TEST(Triangulator, CoversPolygonsWithCornersTwiceAndSpikes) {
@@ -202,10 +212,27 @@ TEST(Triangulator, CoversPolygonsWithCornersTwiceAndSpikes) {
     twice.insert(twice.end(), 2, p);
   expect_covers_from_each_corner(twice);
   // A spike without width on the outside of an L, and one from each of three sides of a square.
-  expect_covers_from_each_corner({{0, 0, 0}, {4, 0, 0}, {4, 1, 0}, {7, 1, 0}, {4, 1, 0}, {4, 2, 0},
-                                  {2, 2, 0}, {2, 4, 0}, {0, 4, 0}});
-  expect_covers_from_each_corner({{0, 0, 0}, {2, 0, 0}, {2, -3, 0}, {2, 0, 0}, {4, 0, 0}, {4, 2, 0},
-                                  {7, 2, 0}, {4, 2, 0}, {4, 4, 0}, {2, 4, 0}, {2, 7, 0}, {2, 4, 0},
+  expect_covers_from_each_corner({{0, 0, 0},
+                                  {4, 0, 0},
+                                  {4, 1, 0},
+                                  {7, 1, 0},
+                                  {4, 1, 0},
+                                  {4, 2, 0},
+                                  {2, 2, 0},
+                                  {2, 4, 0},
+                                  {0, 4, 0}});
+  expect_covers_from_each_corner({{0, 0, 0},
+                                  {2, 0, 0},
+                                  {2, -3, 0},
+                                  {2, 0, 0},
+                                  {4, 0, 0},
+                                  {4, 2, 0},
+                                  {7, 2, 0},
+                                  {4, 2, 0},
+                                  {4, 4, 0},
+                                  {2, 4, 0},
+                                  {2, 7, 0},
+                                  {2, 4, 0},
                                   {0, 4, 0}});
 }
 
