@@ -75,7 +75,7 @@ max_spp = 256
 image = "png"
 mask = true
 )",
-      facts.from, to_toml(facts.name), to_toml(facts.models_dir),
+      to_toml(facts.from), to_toml(facts.name), to_toml(facts.models_dir),
       facts.names_by_path ? "path" : "file", classes_text(facts));
 }
 

@@ -98,6 +98,7 @@ class ImportTest(TinyCase):
                                         ("m1298.off", "vehicle/car", "test", 1), ("m0.off", "", "", None)})
 
     def test_names_with_commas_and_quotes(self):
+        self.models = self.folder / "two\nlines"  # in a comment of the recipe
         self.put({'a, "b"/x,y.off': self.box})
         self.take_in(self.models)
         self.assertEqual(self.rows()[1], ["x,y.off", 'a, "b"', ""])
