@@ -14,13 +14,7 @@ namespace {
 nlohmann::json to_json(const std::vector<CheckFinding>& findings) {
   nlohmann::json list = nlohmann::json::array();
   for (const CheckFinding& finding : findings)
-    list.push_back({{"check", finding.check},
-                    {"level", name_of(finding.level)},
-                    {"what", finding.what},
-                    {"count", finding.count},
-                    {"of", finding.of},
-                    {"examples", finding.examples},
-                    {"advice", finding.advice}});
+    list.push_back(to_json_value(finding));
   return list;
 }
 

@@ -5,6 +5,8 @@
 #include "tracer/base/error.h"
 #include "tracer/base/nearest.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <iterator>
 
@@ -75,6 +77,13 @@ std::vector<CheckFinding> run_checks(const CheckInput& input,
     std::move(found.begin(), found.end(), std::back_inserter(findings));
   }
   return findings;
+}
+
+nlohmann::json to_json_value(const CheckFinding& finding) {
+  return {{"check", finding.check},  {"level", name_of(finding.level)},
+          {"what", finding.what},    {"count", finding.count},
+          {"of", finding.of},        {"examples", finding.examples},
+          {"advice", finding.advice}};
 }
 
 }  // namespace ds

@@ -3,6 +3,8 @@
 
 #include "manifests/manifest.h"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -32,6 +34,8 @@ struct CheckFinding {
   std::vector<std::string> images{};
 };
 inline constexpr std::size_t k_check_examples = 3;
+/// An object of all but the images.
+nlohmann::json to_json_value(const CheckFinding& finding);
 
 /// A dataset as its manifest tells it; all that is checked is known from there.
 struct CheckInput {

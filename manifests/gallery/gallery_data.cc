@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -126,15 +127,11 @@ json checks_of(const std::vector<CheckFinding>& findings, const std::vector<Imag
   for (std::size_t i = 0; i < images.size(); ++i)
     places.emplace(images[i].id, i);
   json list = json::array();
-  for (const CheckFinding& finding : findings)
-    list.push_back({{"check", finding.check},
-                    {"level", name_of(finding.level)},
-                    {"what", finding.what},
-                    {"count", finding.count},
-                    {"of", finding.of},
-                    {"advice", finding.advice},
-                    {"examples", finding.examples},
-                    {"images", runs_of(finding.images, places)}});
+  for (const CheckFinding& finding : findings) {
+    json object = to_json_value(finding);
+    object["images"] = runs_of(finding.images, places);
+    list.push_back(std::move(object));
+  }
   return list;
 }
 
