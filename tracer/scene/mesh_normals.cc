@@ -15,7 +15,7 @@ constexpr std::size_t k_most_in_fan = 512;
 
 /// Taken off the cosine of the crease, so that faces that meet at the crease angle itself (coplanar
 /// ones at 0, those of a box at 90 degrees) do not fall on either side by rounding.
-constexpr double k_rounding = 1e-12;
+constexpr double k_crease_rounding = 1e-12;
 
 /// arctan of x in [0, 1]: halved twice by arctan x = 2 arctan(x / (1 + sqrt(1 + x^2))), which
 /// brings x below 0.199, then the Taylor series, whose first term left out is below 0.199^25 / 25
@@ -97,7 +97,7 @@ class FanShader {
   FanShader(std::span<const Vec3d> normals, std::span<const Vec3d> weighted, double crease_deg)
       : normals_(normals),
         weighted_(weighted),
-        crease_cosine_(cosine_deg(crease_deg) - k_rounding),
+        crease_cosine_(cosine_deg(crease_deg) - k_crease_rounding),
         half_crease_cosine_(cosine_deg(crease_deg / 2)) {}
 
   void shade(std::span<const std::uint32_t> fan, std::vector<Vec3d>& out) const {
@@ -170,7 +170,7 @@ std::vector<Vec3d> smooth_corner_normals(std::span<const Vec3d> positions,
                                          std::span<const std::uint32_t> welded, double crease_deg) {
   const std::vector<Vec3d> normals = face_normals(positions, triangles);
   const std::vector<Vec3d> weighted = weighted_normals(positions, triangles);
-  const Fans fans = find_fans(triangles, welded, normals, cosine_deg(crease_deg) - k_rounding);
+  const Fans fans = find_fans(triangles, welded, normals, cosine_deg(crease_deg) - k_crease_rounding);
   const FanShader shader(normals, weighted, crease_deg);
   std::vector<Vec3d> out(3 * triangles.size());
   std::size_t begin = 0;

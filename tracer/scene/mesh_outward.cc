@@ -83,7 +83,7 @@ void find_open(std::span<const Triangle> all, std::span<const std::uint32_t> wel
 /// Six times the signed volume, about the first corner so that a far surface keeps its digits.
 void measure(std::span<const Vec3d> positions, std::span<const Triangle> all,
              const std::vector<char>& side, Component& component) {
-  constexpr double k_rounding = 0x1p-40;  // of a million terms of a few roundings of 2^-53 each
+  constexpr double k_sum_rounding = 0x1p-40;  // of a million terms of a few roundings of 2^-53 each
   const bool mostly_turned = 2 * component.turned > component.triangles.size();
   const Vec3d origin = positions[all[component.triangles[0]][0]];
   double sum = 0, size = 0;
@@ -94,7 +94,7 @@ void measure(std::span<const Vec3d> positions, std::span<const Triangle> all,
     sum += (side[t] != 0) != mostly_turned ? -term : term;
     size += length(a - origin) * length(area);
   }
-  component.volume = std::fabs(sum) > k_rounding * size ? sum : 0;
+  component.volume = std::fabs(sum) > k_sum_rounding * size ? sum : 0;
 }
 
 /// Decides which closed components turn round: those around which there is none where their volume
