@@ -3,6 +3,7 @@
 
 #include "tracer/base/error.h"
 #include "tracer/base/text_lines.h"
+#include "tracer/base/utf8.h"
 
 #include <algorithm>
 #include <array>
@@ -110,7 +111,7 @@ Columns find_columns(const Row& header, const SourcePlace& place, Diagnostics& d
 
 std::vector<LabelledModel> parse_class_table(std::string_view text, const std::string& name) {
   Diagnostics diagnostics(ErrorKind::asset);
-  if (is_utf16(text)) diagnostics.add({name}, "{}", k_utf16_message);
+  check_utf8(text, name, diagnostics);
   diagnostics.throw_if_any();
   CsvRows rows(without_bom(text), name, diagnostics);
   const std::optional<Row> header = rows.next();

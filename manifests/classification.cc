@@ -5,6 +5,7 @@
 #include "tracer/base/files.h"
 #include "tracer/base/nearest.h"
 #include "tracer/base/text_lines.h"
+#include "tracer/base/utf8.h"
 
 #include <algorithm>
 #include <charconv>
@@ -50,10 +51,8 @@ class Parser {
   explicit Parser(const std::string& file) : diagnostics_(ErrorKind::asset) { result_.file = file; }
 
   Classification parse(std::string_view text) {
-    if (is_utf16(text)) {
-      diagnostics_.add({result_.file}, "{}", k_utf16_message);
-      diagnostics_.throw_if_any();
-    }
+    check_utf8(text, result_.file, diagnostics_);
+    diagnostics_.throw_if_any();
     text = without_bom(text);
     while (!text.empty()) {
       ++line_;

@@ -2,6 +2,7 @@
 #include "builder/import/class_sources.h"
 
 #include "builder/recipe/class_files.h"
+#include "tracer/base/file_names.h"
 #include "tracer/scene/mesh_formats.h"
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 
 #include "builder/recipe/recipe.h"
 #include "manifests/json_text.h"
+#include "tracer/base/file_names.h"
 #include "tracer/base/log.h"
 #include "tracer/base/nearest.h"
 #include "tracer/scene/mesh_formats.h"

@@ -2,9 +2,12 @@
 #include "builder/recipe/class_files.h"
 
 #include "manifests/class_table.h"
+#include "tracer/base/file_names.h"
 #include "tracer/base/files.h"
+#include "tracer/base/log.h"
 #include "tracer/base/nearest.h"
 #include "tracer/base/text_lines.h"
+#include "tracer/base/utf8.h"
 #include "tracer/scene/mesh_formats.h"
 
 #include <algorithm>
@@ -95,12 +98,19 @@ void read_hierarchies(const Settings& settings, Recipe& recipe) {
     recipe.class_files.push_back(*file);
     try {
       auto& models = found[hierarchy_name(*file)];
+      bool has_splits = false;
       for (LabelledModel& model : read_class_list(*file)) {
+        has_splits = has_splits || !model.label.split.empty();
         const auto [first, is_new] = models.try_emplace(model.model, model);
         if (!is_new)
           diagnostics.add(model.place, "model {} stands in {} already", model.model,
                           to_string(first->second.place));
       }
+      if (has_splits)
+        warn(
+            fmt::format("{}: the column split is not used: a file of classes.more gives further "
+                        "classes, no splits",
+                        file->string()));
     } catch (const Error& error) {
       add_findings(error, diagnostics);
     }
@@ -123,6 +133,7 @@ void read_class_ids(const Settings& settings, Recipe& recipe) {
   std::map<std::string, int, std::less<>> lines;
   try {
     const std::string text = read_text_file(*file);
+    if (!check_utf8(text, file->string(), diagnostics)) return;
     std::string_view rest = without_bom(text);
     for (int line = 1; !rest.empty(); ++line) {
       const std::string_view path = trimmed(take_line(rest));
@@ -136,7 +147,6 @@ void read_class_ids(const Settings& settings, Recipe& recipe) {
                         path);
       recipe.class_ids.emplace_back(path);
     }
-    if (is_utf16(text)) diagnostics.add({file->string()}, "{}", k_utf16_message);
   } catch (const Error& error) {
     add_findings(error, diagnostics);
   }

@@ -3,6 +3,7 @@
 
 #include "builder/recipe/class_files.h"
 #include "manifests/concerns.h"
+#include "tracer/base/file_names.h"
 #include "tracer/scene/mesh_formats.h"
 
 #include <algorithm>

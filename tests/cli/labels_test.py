@@ -161,8 +161,10 @@ class LabelsTest(TinyCase):
         self.assertEqual(run.code, 2)
         self.assertIn("--classes: wanted coarse or kind, got corse, did you mean coarse?", run.err)
         # A class that moves is known by plan, and written without tracing.
-        (self.tiny / "kind.csv").write_text("name,class\nbox,round\n")
-        self.assertIn("classes.more of 4 images", self.run_it("plan", self.recipe, "-o", self.out, *more).out)
+        (self.tiny / "kind.csv").write_text("name,class,split\nbox,round,test\n")
+        run = self.run_it("plan", self.recipe, "-o", self.out, *more)
+        self.assertIn("classes.more of 4 images", run.out)
+        self.assertIn("kind.csv: the column split is not used", run.err)
         self.assert_counts(self.build(*more), traced=0)
         self.assertEqual(self.dataset()["hierarchies"]["kind"], ["round"])
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/utf8.h"
 
+#include "tracer/base/text_lines.h"
+
 #include <cstdint>
 
 namespace ds {
@@ -93,6 +95,19 @@ bool is_utf8(std::string_view text) {
     const std::size_t bytes = character_bytes(text);
     if (bytes == 0) return false;
     text.remove_prefix(bytes);
+  }
+  return true;
+}
+
+bool check_utf8(std::string_view text, const std::string& file, Diagnostics& diagnostics) {
+  if (is_utf16(text)) {
+    diagnostics.add({file}, "{}", k_utf16_message);
+    return false;
+  }
+  for (int line = 1; !text.empty(); ++line) {
+    if (is_utf8(take_line(text))) continue;
+    diagnostics.add({file, line, 0}, "must be UTF-8, found bytes that are none");
+    return false;
   }
   return true;
 }

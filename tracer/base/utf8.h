@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tracer/base/error.h"
+
 #include <string>
 #include <string_view>
 
@@ -8,6 +10,10 @@ namespace ds {
 
 /// Well-formed UTF-8: no overlong form, no surrogate, nothing above U+10FFFF.
 bool is_utf8(std::string_view text);
+
+/// Finds the first line of a file of names that is no UTF-8, or that all of it is UTF-16: adds one
+/// finding then, and returns false.
+bool check_utf8(std::string_view text, const std::string& file, Diagnostics& diagnostics);
 
 /// Text of any encoding as UTF-8, for people to read: UTF-16 where its byte order mark says so
 /// (what is unpaired becomes U+FFFD), UTF-8 as it is, without its mark; anything else as

@@ -2,6 +2,7 @@
 #include "tracer/render/images.h"
 
 #include "tracer/base/error.h"
+#include "tracer/base/file_names.h"
 #include "tracer/base/hash.h"
 #include "tracer/base/log.h"
 #include "tracer/base/luminance.h"
@@ -119,6 +120,11 @@ void check_content(const Image& image, const std::string& bytes) {
 /// What the image is asked for and does not have.
 void check_use(const Image& image, const DecodedImage& decoded, const ImageMeaning& meaning) {
   const std::string name = image.file.string();
+  if (decoded.type != SampleType::float32 && is_named_hdr(image.file))
+    fail(ErrorKind::asset,
+         "{}: its name says that it holds floats, which have no gamma; found whole numbers of {} "
+         "bits (an ending of theirs, as .png, gives them their gamma)",
+         name, decoded.type == SampleType::uint16 ? 16 : 8);
   if (image.channel == ImageChannel::alpha) {
     if (decoded.alpha_channel < 0)
       fail(ErrorKind::asset, "{}: wanted the alpha channel, found none among {} channels", name,

@@ -21,7 +21,7 @@ namespace ds {
 /// picture nothing is stored. Throws
 /// Error(asset) for a file that is missing, is no image, is cut off, promises more pixels than a
 /// file of its size can hold or over 2^28, has channels that make no picture, has another hash than
-/// `content` (unless that is zero), lacks the channel asked for, is a cube map for a light, or
+/// `content` (unless that is zero), lacks the channel asked for, is called as files of floats are and holds none, is a cube map for a light, or
 /// holds a NaN or an infinity, which is named by its place.
 void load_image(Image& image);
 

@@ -2,6 +2,7 @@
 #include "tracer/scene/mesh_formats.h"
 
 #include "tracer/base/error.h"
+#include "tracer/base/file_names.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -64,13 +65,6 @@ std::vector<std::string_view> mesh_endings() {
 
 std::string mesh_endings_text(std::string_view last_joint) {
   return joined(mesh_endings(), last_joint);
-}
-
-bool has_ending(const std::filesystem::path& file, std::string_view ending) {
-  const std::string own = file.extension().string();
-  return std::equal(own.begin(), own.end(), ending.begin(), ending.end(), [](char a, char b) {
-    return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
-  });
 }
 
 bool has_mesh_ending(const std::filesystem::path& file) {

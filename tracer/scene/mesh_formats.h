@@ -33,8 +33,6 @@ std::string mesh_format_names();
 std::vector<std::string_view> mesh_endings();
 /// ".ply or .off", with another last joint where it is given: ".ply and .off".
 std::string mesh_endings_text(std::string_view last_joint = " or ");
-/// Whether a path has that ending (".ply"), in any case.
-bool has_ending(const std::filesystem::path& file, std::string_view ending);
 /// Whether it has one of the formats'.
 bool has_mesh_ending(const std::filesystem::path& file);
 

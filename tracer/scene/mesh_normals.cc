@@ -170,7 +170,8 @@ std::vector<Vec3d> smooth_corner_normals(std::span<const Vec3d> positions,
                                          std::span<const std::uint32_t> welded, double crease_deg) {
   const std::vector<Vec3d> normals = face_normals(positions, triangles);
   const std::vector<Vec3d> weighted = weighted_normals(positions, triangles);
-  const Fans fans = find_fans(triangles, welded, normals, cosine_deg(crease_deg) - k_crease_rounding);
+  const Fans fans =
+      find_fans(triangles, welded, normals, cosine_deg(crease_deg) - k_crease_rounding);
   const FanShader shader(normals, weighted, crease_deg);
   std::vector<Vec3d> out(3 * triangles.size());
   std::size_t begin = 0;

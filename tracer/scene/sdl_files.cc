@@ -15,8 +15,10 @@ constexpr SdlKind k_scene_kinds[] = {SdlKind::texture, SdlKind::material, SdlKin
 
 void require_file(const std::filesystem::path& file) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored))
-    fail(ErrorKind::asset, "{}: file does not exist", file.string());
+  if (std::filesystem::is_regular_file(file, ignored)) return;
+  if (std::filesystem::exists(file, ignored))
+    fail(ErrorKind::asset, "{}: wanted a file, found a folder or a device", file.string());
+  fail(ErrorKind::asset, "{}: file does not exist", file.string());
 }
 
 }  // namespace

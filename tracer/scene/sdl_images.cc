@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tracer/base/file_names.h"
 #include "tracer/base/log.h"
 #include "tracer/scene/sdl_node.h"
 
@@ -54,14 +55,6 @@ constexpr Choice<Storage> k_storages[] = {{"auto", Storage::any},
                                           {"half", Storage::any},
                                           {"float", Storage::any}};
 
-bool is_hdr(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return extension == ".exr" || extension == ".hdr" || extension == ".pfm";
-}
-
 /// An HDR file's values are linear as they stand. LuxCore raises them to the gamma too, which nobody
 /// wants: a gamma given for one must be 1.
 float read_gamma(const SdlNode& node, const std::filesystem::path& file) {
@@ -69,7 +62,7 @@ float read_gamma(const SdlNode& node, const std::filesystem::path& file) {
   const double gamma = node.number(name);
   node.number("gamma");
   if (choose(node, "colorspace", k_color_spaces) == ColorSpace::nop) return 1;
-  if (!is_hdr(file)) return static_cast<float>(gamma);
+  if (!is_named_hdr(file)) return static_cast<float>(gamma);
   if (node.has(name) && gamma != 1)
     node.error(name, "wanted 1 or nothing for the HDR image {}, found {}", file.filename().string(),
                gamma);

@@ -193,8 +193,12 @@ std::optional<std::filesystem::path> SdlNode::file(std::string_view property) co
   if (std::filesystem::is_regular_file(path, ignored)) return path;
   reader_->broken.insert(prefix_);
   // One missing file is one finding, however often it is used.
-  if (reader_->missed.insert(path.string()).second)
-    error(property, "file {} does not exist{}", path.string(), similar_name(path));
+  if (reader_->missed.insert(path.string()).second) {
+    if (std::filesystem::exists(path, ignored))
+      error(property, "wanted a file, found a folder or a device: {}", path.string());
+    else
+      error(property, "file {} does not exist{}", path.string(), similar_name(path));
+  }
   return std::nullopt;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/error.h"
+#include "tracer/base/file_names.h"
 #include "tracer/scene/mesh_formats.h"
 #include "tracer/scene/mesh_text.h"
 #include "tracer/scene/mesh_topology.h"

@@ -20,6 +20,22 @@ TEST(Utf8Test, well_formed_is_what_the_standard_says) {
     EXPECT_FALSE(is_utf8(bad)) << bad;
 }
 
+TEST(Utf8Test, the_line_that_is_none_is_told) {
+  const auto finding = [](std::string_view text) {
+    Diagnostics diagnostics(ErrorKind::asset);
+    const bool is_well_formed = check_utf8(text, "a.cla", diagnostics);
+    EXPECT_EQ(is_well_formed, diagnostics.empty());
+    return diagnostics.empty() ? "" : diagnostics.lines().front();
+  };
+  EXPECT_EQ(finding("M\u00f6bel\r\nb"), "");
+  EXPECT_EQ(finding("a\r\n\nM\xf6"
+                    "bel\n\xff"),
+            "a.cla:3: must be UTF-8, found bytes that are none");
+  EXPECT_EQ(finding("\xff\xfe"
+                    "a"),
+            "a.cla: must be UTF-8, found UTF-16");
+}
+
 TEST(Utf8Test, text_of_any_encoding_becomes_utf8) {
   EXPECT_EQ(utf8_of("\u00a9 2024"), "\u00a9 2024");
   EXPECT_EQ(utf8_of("\xef\xbb\xbf\u00a9"), "\u00a9");

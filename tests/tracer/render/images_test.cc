@@ -260,6 +260,15 @@ TEST_F(LoadImage, AnAlphaThatIsNotThereIsAnError) {
   EXPECT_THAT(error_of(image), HasSubstr("wanted the alpha channel, found none among 3 channels"));
 }
 
+TEST_F(LoadImage, WholeNumbersCalledFloatsAreAnError) {
+  for (const char* name : {"a.exr", "a.HDR", "a.pfm"}) {
+    EXPECT_THAT(error_of(image_of(png_file(1, 1, 8, 2, {1, 2, 3}), name)),
+                HasSubstr("found whole numbers of 8 bits"));
+    EXPECT_THAT(error_of(image_of(png_file(1, 1, 16, 0, {1, 2}), name)),
+                HasSubstr("found whole numbers of 16 bits"));
+  }
+}
+
 TEST_F(LoadImage, ImagesWithoutFilesAndLoadedOnesAreLeftAlone) {
   Scene scene;
   scene.images.resize(2);

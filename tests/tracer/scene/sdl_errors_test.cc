@@ -105,6 +105,8 @@ INSTANTIATE_TEST_SUITE_P(
              "wanted a number or a colour, found t"},
         Case{"scene.textures.t.file = no.png\nscene.materials.a.kd = t",
              "m.scn:1: scene.textures.t.file: file no.png does not exist"},
+        Case{"scene.textures.t.file = .\nscene.materials.a.kd = t",
+             "m.scn:1: scene.textures.t.file: wanted a file, found a folder or a device: ."},
         Case{"scene.textures.t.type = marble\nscene.materials.a.kd = t",
              "m.scn:1: scene.textures.t: mapping.type is missing: only globalmapping3d is "
              "supported, "
