@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 /// How long to sleep where every image left is being made by other processes.
 constexpr std::chrono::milliseconds k_claim_poll{50};
 
-/// The first image of each kind that can need a program of its own: the features of its scene
+/// The first image of each kind that can need a program of its own: the effects of its scene
 /// depend on material and environment, not on the model.
 std::vector<const ImageSpec*> one_of_each_kind(const std::deque<const PlannedImage*>& queue) {
   std::set<std::tuple<fs::path, fs::path, bool, MathMode>> kinds;

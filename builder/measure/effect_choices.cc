@@ -161,7 +161,7 @@ Choices single_choices(const Subject& subject) {
   add_textures(choices, subject.scene);
   add_materials(choices, subject.scene, worn);
   add_objects(choices, subject.scene);
-  if (features_of(subject.scene, subject.camera).guide)
+  if (scene_effects(subject.scene, subject.camera).guide)
     add(choices, "guide to caustics", [](Subject& s) {
       for (Object& object : s.scene.objects)
         object.id = 0;  // no model, no guide

@@ -197,7 +197,7 @@ class KeyMaker::State {
   std::array<std::optional<Hash128>, 8> model_parts_;  ///< by what of the model is read
   std::unordered_map<const void*, Environment> environments_;
   std::map<std::tuple<const void*, const void*, bool>, Kind> kinds_;
-  std::deque<std::pair<Features, std::string>> programs_;
+  std::deque<std::pair<SceneEffects, std::string>> programs_;
   TextForm five_, film_sums_, files_;
 };
 
@@ -290,11 +290,11 @@ Hash128 KeyMaker::State::traced_plane(std::size_t number, const PartHashes& part
 
 /// Of few different ones, however many materials and environments there are.
 const std::string& KeyMaker::State::program(const ImageSpec& image) {
-  Features features = features_of(scene_without_model(inputs_, image), image.camera);
+  SceneEffects effects = scene_effects(scene_without_model(inputs_, image), image.camera);
   for (const auto& [known, text] : programs_)
-    if (known == features) return text;
-  std::string text = program_tokens(path_program_text(features));
-  return programs_.emplace_back(std::move(features), std::move(text)).second;
+    if (known == effects) return text;
+  std::string text = program_tokens(path_program_text(effects));
+  return programs_.emplace_back(std::move(effects), std::move(text)).second;
 }
 
 /// Hash of the program's value in a canonical text, under which that is kept. It depends on the

@@ -80,11 +80,11 @@ Hash128 plane_program(const PlaneType& plane, const std::string& of, Inputs& inp
   const std::string question = fmt::format("program of {} {}", plane.name, of);
   if (const auto known = inputs.find_known(question))
     if (const auto hash = Hash128::from_hex(*known)) return *hash;
-  const Features features = features_of(scene_without_model(inputs, image), image.camera);
+  const SceneEffects effects = scene_effects(scene_without_model(inputs, image), image.camera);
   const std::array alone{&plane};
   const Hash128 hash = hash_text(
-      program_tokens(is_of_light(plane) ? path_program_text(with_light_planes(features, alone))
-                                        : planes_program_text(alone, features)));
+      program_tokens(is_of_light(plane) ? path_program_text(with_light_planes(effects, alone))
+                                        : planes_program_text(alone, effects)));
   inputs.keep_known(question, hash.hex());
   return hash;
 }

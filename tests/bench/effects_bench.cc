@@ -113,7 +113,7 @@ json measure_pair(const Pair& pair, Tracer& specialised, Tracer& full, EngineSet
 void measure_compiling(const std::vector<Pair>& pairs, int repeats, json& result) {
   std::map<std::string, std::vector<std::string>> programs;  // names of pairs by program text
   for (const Pair& pair : pairs)
-    programs[path_program_text(features_of(pair.scene, bench_camera()))].push_back(pair.name());
+    programs[path_program_text(scene_effects(pair.scene, bench_camera()))].push_back(pair.name());
   const Device device("");
   const std::string options =
       fmt::format("{} -DDS_LANES={}", k_strict_options, default_lanes(device.info()));
@@ -132,7 +132,7 @@ void measure_compiling(const std::vector<Pair>& pairs, int repeats, json& result
   };
   for (const auto& [text, names] : programs)
     measure_program(text, names);
-  measure_program(path_program_text(all_features()), {"full program"});
+  measure_program(path_program_text(all_effects()), {"full program"});
 }
 
 int whole_number(const char* text) {

@@ -80,7 +80,7 @@ TEST(Estimator, SamplingTheLightToo) {
 class HostLights {
  public:
   explicit HostLights(const Scene& scene) {
-    const PackedScene packed = pack_scene(scene, features_of(scene, Camera{}), BvhQuality::low);
+    const PackedScene packed = pack_scene(scene, scene_effects(scene, Camera{}), BvhQuality::low);
     for (const auto& [from, to] : {std::pair{&packed.lights, &lights_}, {&packed.tables, &tables_}})
       for (const std::uint32_t word : from->words())
         to->push_back(std::bit_cast<float>(word));

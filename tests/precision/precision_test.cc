@@ -167,7 +167,7 @@ TEST(Precision, Bsdf) {
 class Packed {
  public:
   explicit Packed(const Scene& scene) {
-    const PackedScene packed = pack_scene(scene, features_of(scene, Camera{}), BvhQuality::low);
+    const PackedScene packed = pack_scene(scene, scene_effects(scene, Camera{}), BvhQuality::low);
     for (const auto& [from, to] : {std::pair{&packed.lights, &lights},
                                    {&packed.tables, &tables},
                                    {&packed.triangles, &triangles}})

@@ -61,8 +61,8 @@ std::map<std::string, std::string> bits_of(const BitsRequest& request) {
                                   .hex();
   Tracer tracer(request.tracer);
   for (const Picture& picture : wanted_pictures(request)) {
-    const Features features = features_of(picture.scene, picture.camera);
-    table[picture.name + " program"] = hash_text(program_tokens(path_program_text(features))).hex();
+    const SceneEffects effects = scene_effects(picture.scene, picture.camera);
+    table[picture.name + " program"] = hash_text(program_tokens(path_program_text(effects))).hex();
     table[picture.name + " scene"] = hash_text(canonical_environment(picture.scene)).hex();
     tracer.set_scene(picture.scene);
     table[picture.name + " film"] = film_hash(tracer.trace(picture.camera, picture.engine));

@@ -57,7 +57,7 @@ Film film_of_samples(const std::vector<Vec3>& samples, MathMode math, int lanes,
     given.insert(given.end(), {v.x, v.y, v.z});
   const Device device("");
   const Program program =
-      device.build(path_program_text(all_features()) + k_add_given,
+      device.build(path_program_text(all_effects()) + k_add_given,
                    fmt::format("{} -DDS_LANES={}",
                                math == MathMode::strict ? k_strict_options : k_fast_options, lanes),
                    DS_TEST_PROGRAMS);

@@ -123,14 +123,14 @@ Picture ball_in_the_sun(std::uint32_t id, std::string_view material = "glossy2")
 }
 
 TEST(Guide, IsForModelsThatCastCausticsAmongReceiversOnly) {
-  const auto guided = [](const Scene& scene) { return features_of(scene, Camera{}).guide; };
+  const auto guided = [](const Scene& scene) { return scene_effects(scene, Camera{}).guide; };
   EXPECT_TRUE(guided(ball_in_the_sun(k_model_object_id).scene));
   EXPECT_FALSE(guided(ball_in_the_sun(7).scene));
   EXPECT_FALSE(guided(ball_in_the_sun(k_model_object_id, "matte").scene));
   // A mirror has one lobe, and the guide chooses all the same.
   const Scene mirror = ball_in_the_sun(k_model_object_id, "mirror").scene;
   EXPECT_TRUE(guided(mirror));
-  EXPECT_FALSE(features_of(mirror, Camera{}).lobe_choice);
+  EXPECT_FALSE(scene_effects(mirror, Camera{}).lobe_choice);
   Scene dark = ball_in_the_sun(k_model_object_id).scene;
   dark.lights = {pictures::constant_light({1, 1, 1})};
   EXPECT_FALSE(guided(dark));

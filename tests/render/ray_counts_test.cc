@@ -116,7 +116,7 @@ TEST_P(Rays, DarkLightsAreNotThere) {
   const int lamp = pictures::add_matte(dark, {0.5f, 0.5f, 0.5f});
   dark.materials.back().emits = true;
   pictures::add_object(dark, pictures::quad({0.8f, 0, 0.5f}, {0.1f, 0, 0}, {0, -0.1f, 0}), lamp);
-  EXPECT_TRUE(features_of(dark, {}).lights.empty()) << "their code is left out";
+  EXPECT_TRUE(scene_effects(dark, {}).lights.empty()) << "their code is left out";
   // Nothing shines: there is nothing to look for.
   const Counted nothing = count(dark, GetParam());
   EXPECT_EQ(nothing.rays.camera + nothing.rays.extension + nothing.rays.shadow, 0U);

@@ -97,7 +97,7 @@ class EffectList {
   std::vector<Effect> list_;
 };
 
-void add_nodes(const Scene& scene, const Features& f, EffectList& list) {
+void add_nodes(const Scene& scene, const SceneEffects& f, EffectList& list) {
   const NodeCallers callers = node_callers(scene);
   for (std::size_t i = 0; i < material_types().size(); ++i) {
     const NodeType& type = material_types()[i];
@@ -113,7 +113,7 @@ void add_nodes(const Scene& scene, const Features& f, EffectList& list) {
     const bool there =
         std::any_of(scene.textures.begin(), scene.textures.end(),
                     [&](const Texture& texture) { return texture.type == static_cast<int>(i); });
-    list.add("texture", type.name, Features::number(f.textures, type.kernel_prefix) >= 0,
+    list.add("texture", type.name, SceneEffects::number(f.textures, type.kernel_prefix) >= 0,
              callers.textures[i],
              there ? "no material that is shown uses it" : "no texture is of this type");
   }
@@ -143,13 +143,13 @@ std::string why_no_light(const Scene& scene, std::string_view kind) {
   return "no object emits";
 }
 
-void add_lights(const Scene& scene, const Features& f, EffectList& list) {
-  for (const std::string& kind : all_features().lights)
-    list.add("light", kind, Features::number(f.lights, kind) >= 0, light_callers(scene, kind),
+void add_lights(const Scene& scene, const SceneEffects& f, EffectList& list) {
+  for (const std::string& kind : all_effects().lights)
+    list.add("light", kind, SceneEffects::number(f.lights, kind) >= 0, light_callers(scene, kind),
              why_no_light(scene, kind));
 }
 
-void add_camera(const Scene& scene, const Camera& camera, const Features& f, EffectList& list) {
+void add_camera(const Scene& scene, const Camera& camera, const SceneEffects& f, EffectList& list) {
   Callers lens, invisible;
   if (camera.lens_radius_m > 0) lens.add(fmt::format("lens radius {} m", camera.lens_radius_m));
   list.add("camera", "lens", f.lens, lens, "the lens radius is 0");
@@ -159,7 +159,7 @@ void add_camera(const Scene& scene, const Camera& camera, const Features& f, Eff
            "the camera sees every object");
 }
 
-void add_transport(const Scene& scene, const Features& f, EffectList& list) {
+void add_transport(const Scene& scene, const SceneEffects& f, EffectList& list) {
   Callers sampled, beyond, lobes, guide;
   for (const std::string& kind : f.lights)
     if (has_trait(light_type(kind), kernels::k_trait_sampled)) sampled.add(kind);
@@ -188,12 +188,12 @@ void add_transport(const Scene& scene, const Features& f, EffectList& list) {
 }  // namespace
 
 std::vector<Effect> effects_of(const Scene& scene, const Camera& camera) {
-  const Features features = features_of(scene, camera);
+  const SceneEffects effects = scene_effects(scene, camera);
   EffectList list;
-  add_nodes(scene, features, list);
-  add_lights(scene, features, list);
-  add_camera(scene, camera, features, list);
-  add_transport(scene, features, list);
+  add_nodes(scene, effects, list);
+  add_lights(scene, effects, list);
+  add_camera(scene, camera, effects, list);
+  add_transport(scene, effects, list);
   return list.take();
 }
 

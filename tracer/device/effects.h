@@ -16,7 +16,7 @@ struct Effect {
   std::string why;  ///< what calls for it, or that nothing does
 };
 
-/// Every effect there is, in the order of the tables: those `features_of` the scene and camera
+/// Every effect there is, in the order of the tables: those `scene_effects` the scene and camera
 /// names, with what calls for them, and those the specialised program leaves out. Needs no device.
 std::vector<Effect> effects_of(const Scene& scene, const Camera& camera);
 

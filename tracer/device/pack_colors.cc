@@ -8,17 +8,17 @@
 namespace ds {
 namespace {
 
-bool reads_colors(const Features& features) {
+bool reads_colors(const SceneEffects& effects) {
   return std::any_of(texture_types().begin(), texture_types().end(), [&](const NodeType& type) {
-    return reads_colors(type) && Features::number(features.textures, type.kernel_prefix) >= 0;
+    return reads_colors(type) && SceneEffects::number(effects.textures, type.kernel_prefix) >= 0;
   });
 }
 
 }  // namespace
 
-std::uint32_t pack_colors(const Scene& scene, const Features& features, Words& tables) {
+std::uint32_t pack_colors(const Scene& scene, const SceneEffects& effects, Words& tables) {
   const std::uint32_t offset = tables.offset();
-  if (!reads_colors(features)) return offset;
+  if (!reads_colors(effects)) return offset;
   const auto add = [&](const MeshColor& color) {
     for (const float component : color)
       tables.add(component);

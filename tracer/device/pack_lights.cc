@@ -101,13 +101,13 @@ LightRow light_row(const Scene& scene, const Light& light, double radius, PackCa
   return row_of_inputs(light, radius);
 }
 
-bool is_escape(const Features& features, const LightRow& row) {
-  return Features::number(features.escape_lights, row.kind) >= 0;
+bool is_escape(const SceneEffects& effects, const LightRow& row) {
+  return SceneEffects::number(effects.escape_lights, row.kind) >= 0;
 }
 
 }  // namespace
 
-void pack_lights(const Scene& scene, const Features& features, PackCache* cache,
+void pack_lights(const Scene& scene, const SceneEffects& effects, PackCache* cache,
                  PackedScene& packed, std::vector<std::uint32_t>& mesh_lights) {
   const double radius = scene_radius_of(scene);
   const std::vector<std::uint32_t> first = first_triangles(scene);
@@ -123,7 +123,7 @@ void pack_lights(const Scene& scene, const Features& features, PackCache* cache,
   for (const Light& light : scene.lights)
     if (shines(light)) rows.push_back(light_row(scene, light, radius, cache, packed.tables));
   std::stable_partition(rows.begin(), rows.end(),
-                        [&](const LightRow& row) { return !is_escape(features, row); });
+                        [&](const LightRow& row) { return !is_escape(effects, row); });
 
   // Power says little about what reaches a point: mixed half and half with equal shares, no light
   // is starved.
@@ -147,9 +147,9 @@ void pack_lights(const Scene& scene, const Features& features, PackCache* cache,
   add_cumulative(shares, packed.tables);
   for (std::uint32_t i = 0; i < rows.size(); ++i) {
     const LightRow& row = rows[i];
-    if (is_escape(features, row))
+    if (is_escape(effects, row))
       packed.data.first_escape_light = std::min(packed.data.first_escape_light, i);
-    packed.lights.add(static_cast<std::uint32_t>(Features::number(features.lights, row.kind)));
+    packed.lights.add(static_cast<std::uint32_t>(SceneEffects::number(effects.lights, row.kind)));
     packed.lights.add(static_cast<float>(shares[i]));
     for (const std::uint32_t word : row.parameters.words())
       packed.lights.add(word);

@@ -29,6 +29,6 @@ DS_SCENE_LIGHTS(DS_DECLARE_PACK)
 
 /// Rows of colours in the tables (kernels/scene_data.h), and their offset; none where no texture of the
 /// program reads them.
-std::uint32_t pack_colors(const Scene& scene, const Features& features, Words& tables);
+std::uint32_t pack_colors(const Scene& scene, const SceneEffects& effects, Words& tables);
 
 }  // namespace ds

@@ -2,6 +2,7 @@
 #include "tracer/device/plane_types.h"
 
 #include "tracer/base/error.h"
+#include "tracer/device/program_assembly.h"
 #include "tracer/kernels/all_nodes.h"
 #include "tracer/kernels/planes/list.h"
 #include "tracer/scene/sdl.h"
@@ -39,12 +40,12 @@ bool is_of_light(const PlaneType& plane) {
   return (plane.traits & kernels::k_plane_light) != 0;
 }
 
-Features with_light_planes(Features features, std::span<const PlaneType* const> planes) {
+SceneEffects with_light_planes(SceneEffects effects, std::span<const PlaneType* const> planes) {
   for (const PlaneType* plane : planes) {
     DS_ASSERT(is_of_light(*plane));
-    features.light_planes.emplace_back(plane->name);
+    effects.light_planes.emplace_back(plane->name);
   }
-  return features;
+  return effects;
 }
 
 bool reads_materials(const PlaneType& plane) {
@@ -52,7 +53,7 @@ bool reads_materials(const PlaneType& plane) {
 }
 
 std::string planes_program_text(std::span<const PlaneType* const> planes,
-                                const Features& features) {
+                                const SceneEffects& effects) {
   unsigned traits = 0;
   int before = 0;
   std::string list = "#define DS_PLANES(X)";
@@ -68,8 +69,8 @@ std::string planes_program_text(std::span<const PlaneType* const> planes,
   if ((traits & kernels::k_plane_surface) != 0) list += "#define DS_PLANE_SURFACE\n";
   if ((traits & kernels::k_plane_material_ids) != 0) list += "#define DS_PLANE_MATERIAL_IDS\n";
   if ((traits & kernels::k_plane_materials) != 0) {
-    list += "#define DS_HOOK_ALBEDO\n" + material_definitions(features);
-    const std::vector<std::string> files = material_files(features);
+    list += "#define DS_HOOK_ALBEDO\n" + material_definitions(effects);
+    const std::vector<std::string> files = material_files(effects);
     headers.insert(headers.begin(), files.begin(), files.end());
   }
   headers.emplace_back("tracer/kernels/first_hit.cl");

@@ -30,12 +30,12 @@ bool is_of_light(const PlaneType& plane);
 /// Whether the plane's numbers come from the materials of what is hit.
 bool reads_materials(const PlaneType& plane);
 
-/// `features` with the program of the picture and these planes of light beside it.
-Features with_light_planes(Features features, std::span<const PlaneType* const> planes);
+/// `effects` with the program of the picture and these planes of light beside it.
+SceneEffects with_light_planes(SceneEffects effects, std::span<const PlaneType* const> planes);
 
-/// Source of the program that traces these planes, which ask no light, in this order. `features`: of the scene, where
+/// Source of the program that traces these planes, which ask no light, in this order. `effects`: of the scene, where
 /// one of them reads materials.
 std::string planes_program_text(std::span<const PlaneType* const> planes,
-                                const Features& features = {});
+                                const SceneEffects& effects = {});
 
 }  // namespace ds

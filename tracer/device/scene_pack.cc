@@ -107,13 +107,14 @@ std::vector<std::uint32_t> pack_texels(const Scene& scene, Words& tables) {
 
 /// The material's program with the scene's numbers put in; its offset, or k_none.
 std::uint32_t pack_texture_code(const Scene& scene, const Material& material,
-                                const Features& features, const std::vector<std::uint32_t>& texels,
-                                std::uint32_t colors, Words& out) {
+                                const SceneEffects& effects,
+                                const std::vector<std::uint32_t>& texels, std::uint32_t colors,
+                                Words& out) {
   TextureCode code = texture_code(scene, material);
   if (code.words.empty()) return k_none;
   for (const std::size_t i : code.op_words) {
     const std::size_t row = code.words[i] - std::uint32_t{kernels::op_texture};
-    const int number = Features::number(features.textures, texture_types()[row].kernel_prefix);
+    const int number = SceneEffects::number(effects.textures, texture_types()[row].kernel_prefix);
     code.words[i] = std::uint32_t{kernels::op_texture} + static_cast<std::uint32_t>(number);
   }
   for (const std::size_t i : code.image_words)
@@ -140,24 +141,24 @@ void pack_inputs(const Material& material, Words& out) {
     out.add(number);
 }
 
-void pack_materials(const Scene& scene, const Features& features,
+void pack_materials(const Scene& scene, const SceneEffects& effects,
                     const std::vector<std::uint32_t>& texels, std::uint32_t colors,
                     PackedScene& packed) {
   const auto row_words =
-      static_cast<std::uint32_t>(kernels::k_material_head + features.material_inputs);
+      static_cast<std::uint32_t>(kernels::k_material_head + effects.material_inputs);
   packed.data.material_words = row_words;
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     const Material& material = scene.materials[i];
     const std::string_view prefix =
         material_types()[static_cast<std::size_t>(material.type)].kernel_prefix;
     Words& out = packed.materials;
-    const int number = Features::number(features.materials, prefix);
-    const int chooser = Features::number(features.choosers, prefix);
+    const int number = SceneEffects::number(effects.materials, prefix);
+    const int chooser = SceneEffects::number(effects.choosers, prefix);
     // A material that nothing shows has no number.
     out.add(number >= 0 ? static_cast<std::uint32_t>(number)
-                        : static_cast<std::uint32_t>(features.materials.size()) +
+                        : static_cast<std::uint32_t>(effects.materials.size()) +
                               static_cast<std::uint32_t>(std::max(chooser, 0)));
-    out.add(pack_texture_code(scene, material, features, texels, colors, packed.texture_code));
+    out.add(pack_texture_code(scene, material, effects, texels, colors, packed.texture_code));
     for (const int child : material.children)
       out.add(static_cast<std::uint32_t>(std::max(child, 0)));
     out.add(material.emission.constant);
@@ -211,15 +212,15 @@ std::vector<std::uint32_t> first_triangles(const Scene& scene) {
   return first;
 }
 
-PackedScene pack_scene(const Scene& scene, const Features& features, BvhQuality quality,
+PackedScene pack_scene(const Scene& scene, const SceneEffects& effects, BvhQuality quality,
                        int bvh_width, PackCache* cache) {
   const std::vector<Corners> corners = corners_of(scene);
   PackedScene packed;
   const std::vector<std::uint32_t> texels = pack_texels(scene, packed.tables);
-  const std::uint32_t colors = pack_colors(scene, features, packed.tables);
-  pack_materials(scene, features, texels, colors, packed);
+  const std::uint32_t colors = pack_colors(scene, effects, packed.tables);
+  pack_materials(scene, effects, texels, colors, packed);
   std::vector<std::uint32_t> mesh_lights;
-  pack_lights(scene, features, cache, packed, mesh_lights);
+  pack_lights(scene, effects, cache, packed, mesh_lights);
   packed.bvh = tree_of(scene, corners, quality, bvh_width, cache);
   pack_triangles(scene, corners, mesh_lights, cache, packed);
   return packed;

@@ -87,10 +87,10 @@ struct PackCache {
   Kept<InfiniteTables> infinite;
 };
 
-/// Images must be loaded. `features` gives the numbers of materials, textures and lights: the
-/// scene's own, or all_features(). Throws Error(asset) for a scene without triangles or with what
+/// Images must be loaded. `effects` gives the numbers of materials, textures and lights: the
+/// scene's own, or all_effects(). Throws Error(asset) for a scene without triangles or with what
 /// the tracer cannot hold. `bvh_width`: build_bvh's.
-PackedScene pack_scene(const Scene& scene, const Features& features, BvhQuality quality,
+PackedScene pack_scene(const Scene& scene, const SceneEffects& effects, BvhQuality quality,
                        int bvh_width = k_most_bvh_width, PackCache* cache = nullptr);
 
 /// What planes read of a scene (first_hit.cl): tree and triangles. Loads no image and numbers
@@ -104,7 +104,7 @@ std::vector<std::uint32_t> first_triangles(const Scene& scene);
 
 /// Appends the lights' rows and tables and fills the light fields of `packed.data`.
 /// `mesh_lights[o]` becomes the row of the light that object o is, or k_none. `cache` may be null.
-void pack_lights(const Scene& scene, const Features& features, PackCache* cache,
+void pack_lights(const Scene& scene, const SceneEffects& effects, PackCache* cache,
                  PackedScene& packed, std::vector<std::uint32_t>& mesh_lights);
 
 }  // namespace ds

@@ -50,14 +50,14 @@ std::vector<std::uint32_t> material_ids(const Scene& scene) {
 }  // namespace
 
 Kernel& Tracer::State::plane_kernel(const std::vector<const PlaneType*>& types) {
-  std::optional<Features> features;
-  if (read_materials(types)) features = packed_for;
+  std::optional<SceneEffects> effects;
+  if (read_materials(types)) effects = packed_for;
   for (PlaneKernel& known : plane_kernels)
-    if (known.types == types && known.features == features) return known.kernel;
+    if (known.types == types && known.effects == effects) return known.kernel;
   const Program program = device.build(
-      planes_program_text(types, features.value_or(Features{})),
+      planes_program_text(types, effects.value_or(SceneEffects{})),
       fmt::format("{} -DDS_LANES={}", k_strict_options, plane_lanes()), options.cache_folder);
-  plane_kernels.push_back({types, features, device.kernel(program, "trace_planes")});
+  plane_kernels.push_back({types, effects, device.kernel(program, "trace_planes")});
   return plane_kernels.back().kernel;
 }
 

@@ -64,7 +64,7 @@ std::vector<RayAnswer> GuideMaker::trace(std::span<const RayWords> rays, const B
 }
 
 std::vector<std::uint32_t> GuideMaker::make(const Scene& scene, const PackedScene& packed,
-                                            const Features& numbering, std::size_t photons) {
+                                            const SceneEffects& numbering, std::size_t photons) {
   const std::lock_guard lock(mutex_);
   if (!has_program_) {
     rays_kernel_ = device_.kernel(

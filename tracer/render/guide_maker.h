@@ -28,7 +28,7 @@ class GuideMaker {
 
   /// The words that kernels/guide.h reads.
   std::vector<std::uint32_t> make(const Scene& scene, const PackedScene& packed,
-                                  const Features& numbering, std::size_t photons);
+                                  const SceneEffects& numbering, std::size_t photons);
 
  private:
   std::vector<RayAnswer> trace(std::span<const RayWords> rays, const Buffer& nodes,

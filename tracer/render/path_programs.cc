@@ -36,35 +36,35 @@ PathPrograms::PathPrograms(const Device& device, std::string definitions,
       definitions_(std::move(definitions)),
       cache_folder_(std::move(cache_folder)) {}
 
-PathPrograms::Entry* PathPrograms::find(const Features& features, MathMode math) {
+PathPrograms::Entry* PathPrograms::find(const SceneEffects& effects, MathMode math) {
   for (Entry& entry : entries_)
-    if (entry.math == math && entry.features == features) return &entry;
+    if (entry.math == math && entry.effects == effects) return &entry;
   return nullptr;
 }
 
-std::shared_future<Program> PathPrograms::start(const Features& features, MathMode math,
+std::shared_future<Program> PathPrograms::start(const SceneEffects& effects, MathMode math,
                                                 std::launch when) {
   const std::string options = fmt::format(
       "{} {}", math == MathMode::strict ? k_strict_options : k_fast_options, definitions_);
   return std::async(when,
-                    [this, features, options] {
-                      return device_.build(path_program_text(features), options, cache_folder_);
+                    [this, effects, options] {
+                      return device_.build(path_program_text(effects), options, cache_folder_);
                     })
       .share();
 }
 
-Program PathPrograms::get(const Features& features, MathMode math) {
-  Entry* entry = find(features, math);
+Program PathPrograms::get(const SceneEffects& effects, MathMode math) {
+  Entry* entry = find(effects, math);
   if (entry == nullptr) {
-    entries_.push_back({features, math, false, start(features, math, std::launch::deferred)});
+    entries_.push_back({effects, math, false, start(effects, math, std::launch::deferred)});
     entry = &entries_.back();
   }
   return entry->program.get();
 }
 
-bool PathPrograms::make_ahead(const Features& features, MathMode math) {
-  if (find(features, math) != nullptr) return false;
-  entries_.push_back({features, math, true, start(features, math, std::launch::async)});
+bool PathPrograms::make_ahead(const SceneEffects& effects, MathMode math) {
+  if (find(effects, math) != nullptr) return false;
+  entries_.push_back({effects, math, true, start(effects, math, std::launch::async)});
   return true;
 }
 

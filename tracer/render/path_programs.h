@@ -17,7 +17,7 @@ namespace ds {
 /// an AVX2 machine pictures take 0.99 of the time, and programs 1.8 times as long to compile.
 int default_lanes(const DeviceInfo& device);
 
-/// The path-tracing programs of one device, one for each set of features and kind of arithmetic.
+/// The path-tracing programs of one device, one for each set of effects and kind of arithmetic.
 /// Each is made once: when it is asked for, or before that in a thread of its own, so that it is
 /// compiled while a picture is traced with another. Called from one thread.
 class PathPrograms {
@@ -27,26 +27,26 @@ class PathPrograms {
   PathPrograms(const Device& device, std::string definitions, std::filesystem::path cache_folder);
 
   /// Waits where it is being made. Throws what Device::build threw, each time it is asked for.
-  Program get(const Features& features, MathMode math);
+  Program get(const SceneEffects& effects, MathMode math);
   /// Starts to make it in a thread; false where it is there or on its way. Does not throw for what
   /// is wrong with the program: `get` does.
-  bool make_ahead(const Features& features, MathMode math);
+  bool make_ahead(const SceneEffects& effects, MathMode math);
   ProgramCounts counts() const;
 
  private:
   struct Entry {
-    Features features;
+    SceneEffects effects;
     MathMode math;
     bool ahead;
     std::shared_future<Program> program;
   };
-  Entry* find(const Features& features, MathMode math);
-  std::shared_future<Program> start(const Features& features, MathMode math, std::launch when);
+  Entry* find(const SceneEffects& effects, MathMode math);
+  std::shared_future<Program> start(const SceneEffects& effects, MathMode math, std::launch when);
 
   const Device& device_;
   std::string definitions_;
   std::filesystem::path cache_folder_;
-  std::deque<Entry> entries_;  ///< as few as there are sets of features: searched one by one
+  std::deque<Entry> entries_;  ///< as few as there are sets of effects: searched one by one
 };
 
 }  // namespace ds

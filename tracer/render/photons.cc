@@ -126,7 +126,7 @@ RayWords ray_from(real3 origin, real3 direction, float t_max) {
 
 class PhotonTracer {
  public:
-  PhotonTracer(const Scene& scene, const PackedScene& packed, const Features& features,
+  PhotonTracer(const Scene& scene, const PackedScene& packed, const SceneEffects& effects,
                const TraceRays& trace)
       : trace_(trace),
         substances_(substances(scene)),
@@ -149,7 +149,7 @@ class PhotonTracer {
     }
     for (natural i = 0; i < packed.data.light_count; ++i) {
       const float kind = lights_[i * kernels::k_light_words + kernels::k_light_kind];
-      const std::string& name = features.lights[std::bit_cast<std::uint32_t>(kind)];
+      const std::string& name = effects.lights[std::bit_cast<std::uint32_t>(kind)];
       if (has_trait(light_type(name), kernels::k_trait_small) &&
           lights_[i * kernels::k_light_words + kernels::k_light_probability] > 0)
         sampled_.push_back({i, name});
@@ -292,9 +292,9 @@ class PhotonTracer {
 }  // namespace
 
 std::vector<Photon> trace_photons(const Scene& scene, const PackedScene& packed,
-                                  const Features& features, std::size_t most,
+                                  const SceneEffects& effects, std::size_t most,
                                   const TraceRays& trace) {
-  return PhotonTracer(scene, packed, features, trace).photons(most);
+  return PhotonTracer(scene, packed, effects, trace).photons(most);
 }
 
 }  // namespace ds

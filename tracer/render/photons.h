@@ -37,7 +37,7 @@ struct Photon {
 /// machine. Textured inputs of the model count as 0.5, or as 0.1 where they are one number: photons
 /// say where to look, not what is there.
 std::vector<Photon> trace_photons(const Scene& scene, const PackedScene& packed,
-                                  const Features& features, std::size_t most,
+                                  const SceneEffects& effects, std::size_t most,
                                   const TraceRays& trace);
 
 }  // namespace ds

@@ -127,7 +127,7 @@ struct TracerOptions {
   std::string cache_folder;  ///< compiled programs; "" = the user's cache folder
 };
 
-/// A tracer's path-tracing programs: one for each set of features that its pictures called for.
+/// A tracer's path-tracing programs: one for each set of effects that its pictures called for.
 struct ProgramCounts {
   std::uint64_t programs = 0;
   std::uint64_t compiled = 0;  ///< of these, not found among those of earlier processes
@@ -198,7 +198,7 @@ class Tracer {
   void prepare(const Camera& camera, const EngineSettings& engine,
                const std::vector<const PlaneType*>& light_planes = {});
   /// Starts to get the program of a later picture ready in a thread of its own, which goes on while
-  /// `trace` runs. Of the scene only what `features_of` looks at matters. False, at once, where the
+  /// `trace` runs. Of the scene only what `scene_effects` looks at matters. False, at once, where the
   /// program is known already.
   bool prepare_ahead(const Scene& scene, const Camera& camera, const EngineSettings& engine,
                      const std::vector<const PlaneType*>& light_planes = {});

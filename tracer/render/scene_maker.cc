@@ -45,14 +45,14 @@ void SceneMaker::pack_ahead(ReadyScene& ready) {
   }
 }
 
-Features SceneMaker::numbering(const Scene& scene) const {
-  Features features = features_of(scene, Camera{});
-  if (full_program_) features = full_features(features);
-  features.lens = false;
-  return features;
+SceneEffects SceneMaker::numbering(const Scene& scene) const {
+  SceneEffects effects = scene_effects(scene, Camera{});
+  if (full_program_) effects = full_effects(effects);
+  effects.lens = false;
+  return effects;
 }
 
-PackedScene SceneMaker::pack(const Scene& scene, const Features& numbering) {
+PackedScene SceneMaker::pack(const Scene& scene, const SceneEffects& numbering) {
   const std::lock_guard lock(mutex_);
   return pack_scene(scene, numbering, quality_, bvh_width_, &cache_);
 }

@@ -18,8 +18,8 @@ namespace ds {
 struct ReadyScene {
   Scene scene;
   bool has_images = false;  ///< they are loaded
-  /// Packed with these features' numbers; none: for planes, which ask for no material.
-  std::optional<Features> numbering;
+  /// Packed with these effects' numbers; none: for planes, which ask for no material.
+  std::optional<SceneEffects> numbering;
   std::optional<PackedScene> packed;
   std::size_t guide_photons = 0;     ///< that `guide` is made of; 0: there is none
   std::vector<std::uint32_t> guide;  ///< GuideMaker's
@@ -39,8 +39,8 @@ class SceneMaker {
   /// Loads the scene's images where that was not done.
   void load_images(ReadyScene& ready);
   /// Of the scene in whatever light and by whatever camera it is seen: no lens.
-  Features numbering(const Scene& scene) const;
-  PackedScene pack(const Scene& scene, const Features& numbering);
+  SceneEffects numbering(const Scene& scene) const;
+  PackedScene pack(const Scene& scene, const SceneEffects& numbering);
   /// What planes read.
   PackedScene pack_surfaces(const Scene& scene);
 

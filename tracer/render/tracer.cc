@@ -68,7 +68,7 @@ void Tracer::prepare(const Camera& camera, const EngineSettings& engine,
 bool Tracer::prepare_ahead(const Scene& scene, const Camera& camera, const EngineSettings& engine,
                            const std::vector<const PlaneType*>& light_planes) {
   return state_->programs.make_ahead(
-      with_light_planes(state_->features(scene, camera), light_planes), engine.math);
+      with_light_planes(state_->effects(scene, camera), light_planes), engine.math);
 }
 
 ProgramCounts Tracer::programs() const {

@@ -34,8 +34,8 @@ void Tracer::State::prepare(const Camera& camera, const EngineSettings& engine,
                             const std::vector<const PlaneType*>& light_planes) {
   if (!ready) fail(ErrorKind::device, "no scene was set before tracing");
   maker.load_images(*ready);
-  Features numbering = features(scene(), camera);
-  const Features wanted = with_light_planes(numbering, light_planes);
+  SceneEffects numbering = effects(scene(), camera);
+  const SceneEffects wanted = with_light_planes(numbering, light_planes);
   // The lens changes the program, not the numbers in the tables.
   numbering.lens = false;
   const std::size_t photons = wanted.guide ? photons_for(engine) : 0;
@@ -62,13 +62,13 @@ void Tracer::State::forget_scene() {
   device_model.reset();
 }
 
-PackedScene Tracer::State::words_for(const Features& numbering) {
+PackedScene Tracer::State::words_for(const SceneEffects& numbering) {
   if (ready->packed && ready->numbering == numbering)
     return *std::exchange(ready->packed, std::nullopt);
   return maker.pack(scene(), numbering);
 }
 
-void Tracer::State::take(PackedScene scene_words, const std::optional<Features>& numbering) {
+void Tracer::State::take(PackedScene scene_words, const std::optional<SceneEffects>& numbering) {
   on_device = false;
   device_scene.take(device, scene_words, uploads);
   on_device = true;
@@ -88,7 +88,7 @@ void Tracer::State::take_surfaces() {
 void Tracer::State::take_materials(const Camera& camera) {
   if (packed_for) return;
   maker.load_images(*ready);
-  Features numbering = features(scene(), camera);
+  SceneEffects numbering = effects(scene(), camera);
   numbering.lens = false;
   take(words_for(numbering), numbering);
 }
@@ -100,7 +100,7 @@ std::vector<std::uint32_t> Tracer::State::guide_words(std::size_t photons) {
 }
 
 bool Tracer::State::is_lit(const Camera& camera) const {
-  return !features_of(scene(), camera).lights.empty();
+  return !scene_effects(scene(), camera).lights.empty();
 }
 
 void Tracer::State::start_counting(unsigned argument, std::size_t items) {

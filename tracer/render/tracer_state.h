@@ -25,16 +25,16 @@ inline std::size_t round_up(std::size_t value, std::size_t step) {
 struct Tracer::State {
   explicit State(const TracerOptions& o);
 
-  /// Gets scene, guide and program of a picture ready. The packed scene depends on the features
+  /// Gets scene, guide and program of a picture ready. The packed scene depends on the effects
   /// (numbers), which may change from picture to picture.
   void prepare(const Camera& camera, const EngineSettings& engine,
                const std::vector<const PlaneType*>& light_planes = {});
   void forget_scene();
   const Scene& scene() const { return ready->scene; }
   /// The scene's words with these numbers: those made ready, or made now.
-  PackedScene words_for(const Features& numbering);
+  PackedScene words_for(const SceneEffects& numbering);
   /// Uploads the scene; keeps what a guide will be made of. `numbering`: ReadyScene's.
-  void take(PackedScene scene_words, const std::optional<Features>& numbering);
+  void take(PackedScene scene_words, const std::optional<SceneEffects>& numbering);
   /// Uploads at least what planes read.
   void take_surfaces();
   /// And what those read that ask for materials.
@@ -54,10 +54,10 @@ struct Tracer::State {
   std::vector<Plane> launch_planes(const DeviceScene& of, const Scene& seen, const Camera& camera,
                                    int width, int height,
                                    const std::vector<const PlaneType*>& types);
-  Features features(const Scene& of, const Camera& camera) const {
-    Features own = features_of(of, camera);
+  SceneEffects effects(const Scene& of, const Camera& camera) const {
+    SceneEffects own = scene_effects(of, camera);
     if (!options.full_program) return own;
-    return full_features(own);
+    return full_effects(own);
   }
 
   TracerOptions options;
@@ -71,8 +71,9 @@ struct Tracer::State {
   DeviceScene device_scene;
   bool on_device = false;  ///< it is this scene's
   UploadCounts uploads;
-  std::optional<Features> packed_for;  ///< numbers on the device; none: no picture can be traced
-  std::optional<Features> program_for;
+  std::optional<SceneEffects>
+      packed_for;  ///< numbers on the device; none: no picture can be traced
+  std::optional<SceneEffects> program_for;
   MathMode program_math = MathMode::strict;
   std::optional<PackedScene> packed;
   Buffer guide;
@@ -83,7 +84,7 @@ struct Tracer::State {
   std::optional<DeviceScene> device_model;  ///< the scene's model alone, once that was asked for
   struct PlaneKernel {
     std::vector<const PlaneType*> types;
-    std::optional<Features> features;  ///< where one of them reads materials
+    std::optional<SceneEffects> effects;  ///< where one of them reads materials
     Kernel kernel;
   };
   std::deque<PlaneKernel> plane_kernels;

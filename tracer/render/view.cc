@@ -164,13 +164,13 @@ std::string canonical_kept_engine(const EngineSettings& engine, std::string_view
 
 std::string canonical_engine(const Scene& scene, const Camera& camera,
                              const EngineSettings& engine) {
-  return canonical_engine(engine, program_tokens(path_program_text(features_of(scene, camera))));
+  return canonical_engine(engine, program_tokens(path_program_text(scene_effects(scene, camera))));
 }
 
 std::string canonical_kept_engine(const Scene& scene, const Camera& camera,
                                   const EngineSettings& engine) {
   return canonical_kept_engine(engine,
-                               program_tokens(path_program_text(features_of(scene, camera))));
+                               program_tokens(path_program_text(scene_effects(scene, camera))));
 }
 
 }  // namespace ds

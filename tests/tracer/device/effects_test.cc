@@ -41,7 +41,7 @@ std::vector<pictures::Picture> scenes() {
 TEST(Effects, AreSimulatedWhereTheProgramHoldsTheirCode) {
   for (const pictures::Picture& p : scenes()) {
     const std::vector<Effect> effects = effects_of(p.scene, p.camera);
-    const std::string text = program_tokens(path_program_text(features_of(p.scene, p.camera)));
+    const std::string text = program_tokens(path_program_text(scene_effects(p.scene, p.camera)));
     const auto has = [&](const std::string& code) { return text.find(code) != text.npos; };
     for (const NodeType& type : material_types()) {
       const std::string code =
@@ -52,7 +52,7 @@ TEST(Effects, AreSimulatedWhereTheProgramHoldsTheirCode) {
       EXPECT_EQ(find(effects, "texture", type.name).simulated,
                 has(" " + std::string(type.kernel_prefix) + "_evaluate("))
           << p.name << type.name;
-    for (const std::string& kind : all_features().lights)
+    for (const std::string& kind : all_effects().lights)
       EXPECT_EQ(find(effects, "light", kind).simulated, has(" " + kind + "_sample("))
           << p.name << kind;
     EXPECT_EQ(find(effects, "camera", "lens").simulated, has("#define DS_LENS\n"));

@@ -6,6 +6,7 @@
 #include "tests/render/pictures.h"
 #include "tracer/base/error.h"
 #include "tracer/device/plane_types.h"
+#include "tracer/device/program_assembly.h"
 #include "tracer/device/program_tokens.h"
 #include "tracer/kernels/embedded.h"
 #include "tracer/scene/type_tables.h"
@@ -31,7 +32,7 @@ Scene scene_of(const std::vector<std::string_view>& materials) {
 }
 
 std::string text_of(const Scene& scene, const Camera& camera = {}) {
-  return program_tokens(path_program_text(features_of(scene, camera)));
+  return program_tokens(path_program_text(scene_effects(scene, camera)));
 }
 
 std::size_t count_of(std::string_view text, std::string_view part) {
@@ -83,7 +84,7 @@ TEST(ProgramText, LightsTexturesAndLensAreThereWhereCalledFor) {
   EXPECT_EQ(text_of(textured).find("checkerboard3d_evaluate"), std::string::npos);
 }
 
-TEST(ProgramText, EqualFeaturesMakeEqualTexts) {
+TEST(ProgramText, EqualEffectsMakeEqualTexts) {
   // Whatever the order, the numbers and the geometry.
   const std::string text = text_of(scene_of({"matte", "glossy2", "glass"}));
   EXPECT_EQ(text_of(scene_of({"glass", "matte", "glossy2", "glass"})), text);
@@ -98,11 +99,11 @@ std::string all_planes_text() {
   std::vector<const PlaneType*> all;
   for (const PlaneType& plane : plane_types())
     if (!is_of_light(plane)) all.push_back(&plane);
-  return planes_program_text(all, all_features());
+  return planes_program_text(all, all_effects());
 }
 
 TEST(ProgramText, HooksAreInNoProgramThatDoesNotAskForThem) {
-  const Features plain = features_of(scene_of({"matte", "glossy2", "mix"}), {});
+  const SceneEffects plain = scene_effects(scene_of({"matte", "glossy2", "mix"}), {});
   const std::string text = program_tokens(path_program_text(plain));
   EXPECT_EQ(text.find("DS_HOOK"), std::string::npos);
   for (const char* word : {"_albedo(", "_second(", "_diffuse(", "contribute(", "light_film"})
@@ -119,16 +120,16 @@ TEST(ProgramText, HooksAreInNoProgramThatDoesNotAskForThem) {
 
 TEST(ProgramText, HoldsNothingOfTheHost) {
   // Help, defaults and ranges of a light's properties stand in its header, and are in no key.
-  const std::string text = program_tokens(path_program_text(all_features()));
+  const std::string text = program_tokens(path_program_text(all_effects()));
   for (const char* word : {"DS_HOOK", "LightOnHost", "LightInput", "sun_power"})
     EXPECT_EQ(text.find(word), std::string::npos) << word;
   EXPECT_NE(text.find("sun_sample"), std::string::npos);
 }
 
 TEST(ProgramText, EveryFileStandsInItOnce) {
-  Features features = all_features();
-  features.light_planes = {"emission"};
-  const std::string text = path_program_text(features);
+  SceneEffects effects = all_effects();
+  effects.light_planes = {"emission"};
+  const std::string text = path_program_text(effects);
   for (const EmbeddedFile& file : std::span(k_embedded_files, k_embedded_file_count)) {
     // The first line of code of each file that is part of the whole program.
     if (std::string_view(file.path).ends_with("first_hit.cl") ||
@@ -152,7 +153,7 @@ TEST(ProgramText, EveryFileStandsInItOnce) {
 TEST(ProgramText, NoBuiltInTranscendentalIsCalled) {
   // They give other bits on other devices.
   const std::string text =
-      program_tokens(path_program_text(all_features()) + all_planes_text() + rays_program_text());
+      program_tokens(path_program_text(all_effects()) + all_planes_text() + rays_program_text());
   const std::regex builtin(
       R"(\b(native_|half_)?(sin|cos|tan|exp2?|exp10|log2?|log10|powr?|pown|asin|acos|atan2?|rsqrt|cbrt|hypot|normalize|fast_\w+|mad)\s*\()");
   std::smatch match;
@@ -161,7 +162,7 @@ TEST(ProgramText, NoBuiltInTranscendentalIsCalled) {
 
 TEST(ProgramText, StrictProgramsSwitchContractionOff) {
   for (const std::string& text :
-       {path_program_text(all_features()), all_planes_text(), rays_program_text()})
+       {path_program_text(all_effects()), all_planes_text(), rays_program_text()})
     EXPECT_NE(text.find("pragma OPENCL FP_CONTRACT OFF"), std::string::npos);
 }
 

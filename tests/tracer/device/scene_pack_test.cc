@@ -16,7 +16,7 @@ namespace ds {
 namespace {
 
 PackedScene pack(const Scene& scene) {
-  return pack_scene(scene, features_of(scene, Camera{}), BvhQuality::medium);
+  return pack_scene(scene, scene_effects(scene, Camera{}), BvhQuality::medium);
 }
 
 float number(const Words& words, std::size_t i) {
@@ -81,10 +81,10 @@ TEST(PackCache, ChangesNoWord) {
   PackCache cache(std::size_t{1} << 20U);
   for (const float half : {0.1f, 0.2f, 0.1f, 3.0f}) {
     const Scene scene = room_with(half);
-    const Features features = features_of(scene, Camera{});
-    const PackedScene alone = pack_scene(scene, features, BvhQuality::medium);
+    const SceneEffects effects = scene_effects(scene, Camera{});
+    const PackedScene alone = pack_scene(scene, effects, BvhQuality::medium);
     const PackedScene cached =
-        pack_scene(scene, features, BvhQuality::medium, k_most_bvh_width, &cache);
+        pack_scene(scene, effects, BvhQuality::medium, k_most_bvh_width, &cache);
     EXPECT_EQ(cached.triangles.words(), alone.triangles.words()) << half;
     EXPECT_EQ(cached.tables.words(), alone.tables.words()) << half;
     EXPECT_EQ(cached.lights.words(), alone.lights.words()) << half;

@@ -30,8 +30,8 @@ constexpr double k_pi = std::numbers::pi;
 class PackedLight {
  public:
   explicit PackedLight(const Scene& scene) {
-    Features features = features_of(scene, Camera{});
-    packed_ = pack_scene(scene, features, BvhQuality::low);
+    SceneEffects effects = scene_effects(scene, Camera{});
+    packed_ = pack_scene(scene, effects, BvhQuality::low);
     for (const auto& [from, to] : {std::pair{&packed_.lights, &lights_},
                                    {&packed_.tables, &tables_},
                                    {&packed_.triangles, &triangles_}})
@@ -153,7 +153,7 @@ TEST(InfiniteLight, KeepsTexelsInOneWordWhereThatIsExact) {
                0,   0,   0x1p20f, 0x1p-20f, 0, 0x1p-26f, 3,           17, 200, 42,    7,    0.25f};
   const auto words_of = [](const Image& of) {
     const Scene scene = image_scene(of, Mat4{});
-    const PackedScene packed = pack_scene(scene, features_of(scene, Camera{}), BvhQuality::low);
+    const PackedScene packed = pack_scene(scene, scene_effects(scene, Camera{}), BvhQuality::low);
     return packed.lights.words()[PackedLight::at + infinite_shared_exponent];
   };
   ASSERT_EQ(words_of(image), 1u);

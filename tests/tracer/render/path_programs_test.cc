@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs: one for each set of features, got ready while another picture is traced.
+// Programs: one for each set of effects, got ready while another picture is traced.
 #include "tracer/render/path_programs.h"
 
 #include "tests/render/pictures.h"
@@ -59,10 +59,10 @@ TEST_F(Programs, OneMadeAheadGivesTheSameBits) {
   EXPECT_EQ(counts.ahead, 1U);
 }
 
-TEST_F(Programs, AreAsManyAsSetsOfFeatures) {
+TEST_F(Programs, AreAsManyAsSetsOfEffects) {
   const pictures::Picture& p = all_[0];
   Tracer tracer(options());
-  // Geometry, numbers and seeds are no features; arithmetic and the lens are.
+  // Geometry, numbers and seeds are no effects; arithmetic and the lens are.
   Scene moved = p.scene;
   moved.objects.back().mesh = pictures::sphere({0, 0, 1}, 0.1f, 4, true);
   moved.lights.push_back(pictures::point_light({2, 2, 2}, {1, 1, 1}));
