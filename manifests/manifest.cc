@@ -39,6 +39,12 @@ void add_counted(json& line, const ImageRecord& image) {
             : json({*counts.left, *counts.above,
                     static_cast<std::uint64_t>(image.width) - *counts.left - *counts.right,
                     static_cast<std::uint64_t>(image.height) - *counts.above - *counts.below});
+  if (counts.beyond)
+    line["truncation"] =
+        counts.whole == 0U ? json()
+        : *counts.beyond == 0
+            ? json(0.0)
+            : json(static_cast<double>(*counts.beyond) / static_cast<double>(*counts.whole));
   if (!counts.model || !counts.amodal) return;
   const double of = static_cast<double>(*counts.amodal), seen = static_cast<double>(*counts.model);
   line["visible_fraction"] = of == 0 ? json() : json(seen / of);
@@ -144,6 +150,9 @@ json to_json_value(const DatasetRecord& dataset) {
          "4x4, row-major, column vectors; the model file's coordinates to the world, with "
          "the scale; model_to_camera likewise, to a camera of opencv axes or opengl's (x "
          "right, y up, z backward)"},
+        {"truncation",
+         "share of the pixels that would show the model alone on a picture without end which are "
+         "outside this one; null where some of the model is not before the camera"},
         {"box", "[x, y, width, height] in whole pixels around the model in the mask"},
         {"model_box", "[least, most] of the model file's coordinates; box_m in the world"}}}};
   if (!dataset.about.empty()) object["about"] = dataset.about;

@@ -44,7 +44,7 @@ namespace ds {
 inline constexpr int k_manifest_format = 2;
 /// Counts up when lines or dataset.json gain a field, so that a build writes them anew. Readers need not
 /// know it.
-inline constexpr int k_manifest_fields = 2;
+inline constexpr int k_manifest_fields = 3;
 
 /// One file of a dataset.
 struct FileRecord {
@@ -84,7 +84,8 @@ struct ImageRecord {
   /// An object of the counts that were made; with those of mask and amodal mask the line has
   /// "visible_fraction" too, their quotient, and "occlusion", what it lacks of 1; null where that of the
   /// amodal mask is 0. With the mask's it has "box": [x, y, width, height] in pixels around what is seen of
-  /// the model, from its first column and row; null where nothing is.
+  /// the model, from its first column and row; null where nothing is. "truncation" is beyond / whole of
+  /// count_beyond, 0 where beyond is; null where both are 0.
   PixelCounts pixel_counts{};
   Hash128 render_key, files_key;
   std::array<Hash128, 5> parts{};  ///< model, material, environment, camera, engine

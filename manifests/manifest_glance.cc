@@ -121,12 +121,14 @@ std::optional<LineGlance> glance_at(std::string_view line) {
   count(R"("above":)", glance.pixel_counts.above);
   count(R"("amodal":)", glance.pixel_counts.amodal);
   count(R"("below":)", glance.pixel_counts.below);
+  count(R"("beyond":)", glance.pixel_counts.beyond);
   count(R"("frame":)", glance.pixel_counts.frame);
   count(R"("left":)", glance.pixel_counts.left);
   count(R"("lit":)", glance.pixel_counts.lit);
   count(R"("model":)", glance.pixel_counts.model);
   count(R"("right":)", glance.pixel_counts.right);
   count(R"("white":)", glance.pixel_counts.white);
+  count(R"("whole":)", glance.pixel_counts.whole);
   glance.render_key = at.hash(R"("render_key":)");
   glance.split = at.text(R"("split":)");
   glance.pixels = height * at.count(R"("width":)");

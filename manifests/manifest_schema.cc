@@ -71,7 +71,7 @@ json film_schema() {
 json counts_schema() {
   PixelCounts all;
   all.lit = all.white = all.model = all.frame = all.amodal = 0;
-  all.left = all.right = all.above = all.below = 0;
+  all.left = all.right = all.above = all.below = all.beyond = all.whole = 0;
   const json counts = to_json_value(all);
   json fields = json::object();
   for (const auto& [name, value] : counts.items())
@@ -138,6 +138,8 @@ json image_schema() {
       {"box", said(or_null(list_of(k_count, 4)), "x, y, width, height in the mask, pixels")},
       {"visible_fraction", or_null(k_number)},
       {"occlusion", or_null(k_number)},
+      {"truncation",
+       said(or_null(k_number), "share of the model's silhouette outside the picture")},
       {"tone_map_scale", k_number},
       {"rejected_samples", k_count},
       {"relative_error", or_null(k_number)},
@@ -153,7 +155,7 @@ json image_schema() {
                           {"model", "material", "environment", "camera", "engine"})}};
   json required =
       fields_of(fields, {"classes", "metres_per_pixel", "box", "visible_fraction", "occlusion",
-                         "model_to_world", "model_to_camera", "model_box", "box_m"});
+                         "truncation", "model_to_world", "model_to_camera", "model_box", "box_m"});
   return headed(object_of(std::move(fields), std::move(required)),
                 "A line of manifest/images.jsonl of a dataset of dsbuild");
 }

@@ -23,7 +23,8 @@ constexpr Field k_fields[] = {{"lit", &PixelCounts::lit},       {"white", &Pixel
                               {"model", &PixelCounts::model},   {"frame", &PixelCounts::frame},
                               {"amodal", &PixelCounts::amodal}, {"left", &PixelCounts::left},
                               {"right", &PixelCounts::right},   {"above", &PixelCounts::above},
-                              {"below", &PixelCounts::below}};
+                              {"below", &PixelCounts::below},   {"beyond", &PixelCounts::beyond},
+                              {"whole", &PixelCounts::whole}};
 
 }  // namespace
 

@@ -21,6 +21,7 @@ struct PixelCounts {
   /// Of the mask: columns before and behind the model, rows above and below it; all where it is not
   /// seen. They tell the box around it.
   std::optional<std::uint64_t> left{}, right{}, above{}, below{};
+  std::optional<std::uint64_t> beyond{}, whole{};  ///< as count_beyond gives them
 
   bool operator==(const PixelCounts&) const = default;
 };

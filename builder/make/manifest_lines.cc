@@ -61,6 +61,7 @@ class Lines {
   PlacedFiles& placed_;
   const ManifestWork& work_;
   ManifestWriter writer_;
+  BeyondCounter beyond_;
   std::vector<ImageFacts> made_;  ///< in the plan's order
   std::vector<ImageFacts> older_;
   std::deque<std::string> texts_;  ///< what `older_` views
@@ -133,6 +134,7 @@ bool Lines::has_other_files(const LineGlance& line) const {
 void Lines::add_made(const Wanted& wanted) {
   ImageRecord record = image_record(*wanted.image, dataset_.recipe, plan_, *dataset_.database);
   count_older_pixels(record, *wanted.image, dataset_.folder, *dataset_.database);
+  beyond_.count(record, *wanted.image);
   made_[wanted.made] = facts_of(wanted.image->spec, record.pixel_counts);
   writer_.add(to_json_line(record), glance_at(record));
 }
@@ -197,6 +199,7 @@ WrittenManifest Lines::write() {
     if (order <= 0) ++next;
     if (order >= 0) line = older.next();
   }
+  beyond_.remember(*dataset_.database);
   const std::size_t of_an_earlier_build = older_.size();
   made_.insert(made_.end(), older_.begin(), older_.end());
   std::vector<ImageFacts> pending;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/dataset_concerns.h"
 
+#include "manifests/truncation.h"
 #include "tracer/base/error.h"
+#include "tracer/base/log.h"
 #include "tracer/render/image_files.h"
 
 #include <algorithm>
@@ -124,6 +126,44 @@ void count_older_pixels(ImageRecord& record, const PlannedImage& image,
     } catch (const Error&) {  // it stands as it was placed, and is not for dsbuild to read then
     }
   }
+}
+
+const FileMesh& BeyondCounter::mesh_of(const ImageRecord& record,
+                                       const std::filesystem::path& file) {
+  if (file_ != file) {
+    file_.clear();
+    mesh_ = read_model(file).mesh;
+    file_ = file;
+  }
+  if (bounds_of(mesh_) != record.pose->model_box)
+    fail(ErrorKind::asset, "{}: is no longer the model of the pictures", file.string());
+  return mesh_;
+}
+
+void BeyondCounter::count(ImageRecord& record, const PlannedImage& image) {
+  if (record.pixel_counts.beyond) return;
+  bool read = false;
+  try {
+    const auto counts = count_beyond(record, [&]() -> const FileMesh& {
+      read = true;
+      return mesh_of(record, image.spec.model_file);
+    });
+    if (!counts) return;
+    add_counts(record.pixel_counts, *counts);
+    if (read && !image.keys.outputs.empty())
+      found_.emplace_back(image.keys.outputs.front().key, *counts);
+  } catch (const Error& error) {
+    warn(fmt::format("{}; the manifest does not say what of it is cut off", error.what()));
+  }
+}
+
+void BeyondCounter::remember(Database& database) {
+  if (found_.empty()) return;
+  Transaction transaction(database.connection());
+  for (const auto& [product, counts] : found_)
+    database.add_pixel_counts(product, counts);
+  transaction.commit();
+  found_.clear();
 }
 
 }  // namespace ds

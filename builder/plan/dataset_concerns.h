@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace ds {
@@ -31,5 +32,22 @@ std::vector<Concern> dataset_concerns(const Recipe& recipe, const std::vector<Co
 /// clipped the picture does not tell any more: `white` stays absent.
 void count_older_pixels(ImageRecord& record, const PlannedImage& image,
                         const std::filesystem::path& folder, Database& database);
+
+/// Counts what of its model an image cuts off (count_beyond), where that is not known yet. Keeps the model
+/// that was read last: images of one model follow each other.
+class BeyondCounter {
+ public:
+  /// Writes what reading models told into the database, so that it need not be read again.
+  void remember(Database& database);
+  /// Nothing where the model cannot be read any more, which is warned of.
+  void count(ImageRecord& record, const PlannedImage& image);
+
+ private:
+  const FileMesh& mesh_of(const ImageRecord& record, const std::filesystem::path& file);
+
+  std::filesystem::path file_;
+  FileMesh mesh_;
+  std::vector<std::pair<Hash128, PixelCounts>> found_;  ///< by product
+};
 
 }  // namespace ds

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Masks that show nothing, next to nothing or nothing else, models cut off by the frame or hidden.
+// Masks that show nothing, next to nothing or nothing else, and models that are hidden.
 #include "manifests/check/check.h"
 
 namespace ds {
@@ -42,10 +42,6 @@ void check_masks(const CheckInput& input, CheckReport& report) {
   report.add(CheckLevel::warning, "images show nearly nothing but their model, on over 90 %",
              where([](double share) { return share > k_most_share; }), masks.size(),
              "camera.distance_m = \"fit\"");
-  report.add(CheckLevel::note, "images cut their model off, its mask touches the frame",
-             ids_where(input.images,
-                       [](const ImageRecord& i) { return i.pixel_counts.frame.value_or(0) > 0; }),
-             masks.size(), "camera.distance_m = \"fit\"");
   report.add(
       CheckLevel::note, "images show under half of what would be seen of their model alone",
       ids_where(input.images,
@@ -56,7 +52,7 @@ void check_masks(const CheckInput& input, CheckReport& report) {
 }  // namespace
 
 Check masks_check() {
-  return {"masks", "models that are not seen, hardly seen, cut off or hidden", check_masks};
+  return {"masks", "models that are not seen, hardly seen or hidden", check_masks};
 }
 
 }  // namespace ds

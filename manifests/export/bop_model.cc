@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "manifests/export/bop_model.h"
 
+#include "manifests/canvas.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,60 +44,16 @@ double diameter_of(const std::vector<Vec3d>& points) {
   return std::sqrt(squared);
 }
 
-/// What a triangle covers of the canvas, row by row.
-class Canvas {
- public:
-  Canvas(int width, int height)
-      : width_(3 * width),
-        height_(3 * height),
-        left_(width),
-        top_(height),
-        covered_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 0) {}
-
-  /// Corners in pixels of the picture, whose pixel centres are at .5.
-  void cover(std::array<double, 2> a, std::array<double, 2> b, std::array<double, 2> c) {
-    const int first = to_index(std::min({a[1], b[1], c[1]}) + top_, height_);
-    const int last = to_index(std::max({a[1], b[1], c[1]}) + top_, height_);
-    for (int y = first; y < last; ++y) {
-      const double at = y + 0.5 - top_;
-      double from = 1e300, to = -1e300;
-      for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
-        if ((p[1] <= at) == (q[1] <= at)) continue;
-        const double x = p[0] + (at - p[1]) / (q[1] - p[1]) * (q[0] - p[0]);
-        from = std::min(from, x);
-        to = std::max(to, x);
-      }
-      if (from > to) continue;
-      const int x0 = to_index(from + left_, width_), x1 = to_index(to + left_, width_);
-      const auto row = covered_.begin() + static_cast<std::ptrdiff_t>(y) * width_;
-      std::fill(row + x0, row + x1, std::uint8_t{1});
-    }
-  }
-
-  Silhouette found() const {
-    Silhouette s;
-    std::array<int, 4> box{width_, height_, -1, -1};
-    for (int y = 0; y < height_; ++y)
-      for (int x = 0; x < width_; ++x) {
-        if (covered_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                     static_cast<std::size_t>(x)] == 0)
-          continue;
-        ++s.pixels;
-        box = {std::min(box[0], x), std::min(box[1], y), std::max(box[2], x), y};
-      }
-    if (s.pixels > 0) s.box = {box[0] - left_, box[1] - top_, box[2] - box[0], box[3] - box[1]};
-    return s;
-  }
-
- private:
-  /// The first pixel whose centre is not before the place.
-  static int to_index(double place, int most) {
-    return static_cast<int>(std::clamp(std::ceil(place - 0.5), 0.0, double(most)));
-  }
-
-  int width_, height_, left_, top_;
-  std::vector<std::uint8_t> covered_;
-};
+Silhouette found_on(const Canvas& canvas, int width, int height) {
+  Silhouette s;
+  std::array<int, 4> box{3 * width, 3 * height, -1, -1};
+  canvas.visit([&](int x, int y) {
+    ++s.pixels;
+    box = {std::min(box[0], x), std::min(box[1], y), std::max(box[2], x), std::max(box[3], y)};
+  });
+  if (s.pixels > 0) s.box = {box[0], box[1], box[2] - box[0], box[3] - box[1]};
+  return s;
+}
 
 }  // namespace
 
@@ -151,7 +109,7 @@ Silhouette silhouette(const BopModel& model, const std::array<double, 12>& to_ca
     before.push_back(z > 0);
     seen.push_back({intrinsics[0] * x / z + intrinsics[2], intrinsics[4] * y / z + intrinsics[5]});
   }
-  Canvas canvas(width, height);
+  Canvas canvas(-width, -height, 3 * width, 3 * height);
   bool whole = true;
   for (const auto& t : model.triangles) {
     if (before[t[0]] && before[t[1]] && before[t[2]])
@@ -159,7 +117,7 @@ Silhouette silhouette(const BopModel& model, const std::array<double, 12>& to_ca
     else
       whole = false;
   }
-  Silhouette found = canvas.found();
+  Silhouette found = found_on(canvas, width, height);
   found.whole = whole;
   return found;
 }

@@ -30,6 +30,10 @@ def inverse_of_pose(pose):
     return [turn[i] + [move[i]] for i in range(3)] + [[0, 0, 0, 1]]
 
 
+def turn(a, b, c):
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
 class LabelsTest(TinyCase):
     def records(self):
         return [json.loads(line) for line in (self.out / "manifest/images.jsonl").read_text().splitlines()]
@@ -74,6 +78,27 @@ class LabelsTest(TinyCase):
                 self.assert_close(record["model_to_camera"]["opencv"], to_camera)
                 flip = [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]
                 self.assert_close(record["model_to_camera"]["opengl"], product(flip, to_camera))
+
+    def test_truncation_is_what_rays_beyond_the_frame_meet(self):
+        some = 0
+        for more in (["--set", "camera.target=[0.1,0.02,0.05]"],
+                     ["--set", "camera.type=orthographic", "--set", "camera.extent_m=0.1"]):
+            self.build(*more, "--set", "outputs.image=false", "--set", "outputs.mask=true")
+            for record in self.records():
+                model = corners_of(record["model"], (self.tiny / "models" / record["model"]).read_text())
+                points = [moved(record["model_to_camera"]["opencv"], corner) for corner in model]
+                k, pitch = record["intrinsics"], record.get("metres_per_pixel")
+                seen = [(k[0][0] * x / z + k[0][2], k[1][1] * y / z + k[1][2]) if k else (x / pitch + 16, y / pitch + 16)
+                        for x, y, z in points]
+                # Both models are convex: a pixel shows one where no edge of its outline is to the left.
+                outline = [(a, b) for a in seen for b in seen if a != b and all(turn(a, b, c) >= 0 for c in seen)]
+                least, most = (f(int(c) for p in seen for c in p) for f in (min, max))
+                hits = [(x, y) for x in range(least - 1, most + 1) for y in range(least - 1, most + 1)
+                        if all(turn(a, b, (x + 0.5, y + 0.5)) >= 0 for a, b in outline)]
+                out = [p for p in hits if not (0 <= p[0] < 32 and 0 <= p[1] < 32)]
+                self.assertAlmostEqual(record["truncation"], len(out) / len(hits), delta=0.003, msg=record["id"])
+                some += 0 < len(out) < len(hits)
+        self.assertGreater(some, 8)
 
     def test_box_is_null_where_nothing_is_seen(self):
         self.build("--set", "models.centre=none", "--set", "models.size_m=0.16", "--set", "camera.target=[0,0,9]",

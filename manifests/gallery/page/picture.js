@@ -137,7 +137,7 @@ function factRows(line) {
     ['samples', film.samples ? `${shortNumber(film.samples / pixels)} a pixel` : `${line.spp} a pixel`, []],
     ['rejected samples', line.rejected_samples, []],
     ['camera at', `${vector(at)} m`, []], ['looks along', vector(look), []],
-    ['field of view', `${shortNumber(2 * Math.atan(Math.max(line.width, line.height) / 2 / line.intrinsics[0][0]) * 180 / Math.PI)} degrees`, []],
+    ['field of view', !line.intrinsics ? '' : `${shortNumber(2 * Math.atan(Math.max(line.width, line.height) / 2 / line.intrinsics[0][0]) * 180 / Math.PI)} degrees`, []],
     ['lens radius', line.lens_radius_m ? `${shortNumber(line.lens_radius_m)} m, sharp at ${shortNumber(line.focus_distance_m)} m` : '', []],
     ['box', line.box ? `x ${line.box[0]}, y ${line.box[1]}, ${line.box[2]} x ${line.box[3]} pixels` : '', []],
     ['box of the model', line.box_m ? line.box_m.map(p => (Array.isArray(p) ? vector(p) : shortNumber(p))).join(' to ') : '', []],

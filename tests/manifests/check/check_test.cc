@@ -167,6 +167,23 @@ TEST(Checks, MasksAndPicturesOfNoUse) {
                           HasSubstr("warning: 1/48 pictures are clipped")));
 }
 
+TEST(Checks, ModelsCutOff) {
+  CheckInput input = clean();
+  const auto cut = [&](const char* id, std::uint64_t beyond, std::uint64_t whole) {
+    image_of(input, id).pixel_counts.beyond = beyond;
+    image_of(input, id).pixel_counts.whole = whole;
+  };
+  cut("car0.ply/0", 0, 10);
+  cut("car0.ply/1", 5, 10);
+  EXPECT_THAT(found(input, "truncation"),
+              ElementsAre("note: 1/2 images cut some of their model off: car0.ply/1"));
+  cut("car0.ply/1", 6, 10);
+  cut("car1.ply/0", 0, 0);  // some of it beside the camera
+  EXPECT_THAT(
+      found(input, "truncation"),
+      ElementsAre("warning: 2/3 images cut off over 50 % of their model: car0.ply/1, car1.ply/0"));
+}
+
 TEST(Checks, NoiseAndLostSamples) {
   CheckInput input = clean();
   image_of(input, "car0.ply/0").relative_error = 0.061;
