@@ -60,7 +60,7 @@ bool is_whole_folder(const fs::path& folder, const WholeFolderKind& kind) {
 }
 
 const WholeFolderKind* whole_folder_kind(const fs::path& folder) {
-  for (const WholeFolderKind* kind : {&k_export_folder, &k_gallery_folder})
+  for (const WholeFolderKind* kind : {&k_export_folder, &k_gallery_folder, &k_diff_folder})
     if (is_whole_folder(folder, *kind)) return kind;
   return nullptr;
 }

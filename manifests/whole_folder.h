@@ -20,12 +20,14 @@ struct WholeFolderKind {
   const char* checksums;  ///< file in it: checksums of all others, as in a dataset's manifest
 };
 
-/// Of `dsbuild export` and `dsbuild gallery`.
+/// Of `dsbuild export`, `dsbuild gallery` and `dsbuild diff -o`.
 inline constexpr WholeFolderKind k_export_folder{
     "export", ".dsbuild-export", ".dsbuild-export/export.json", ".dsbuild-export/checksums.xxh128"};
 inline constexpr WholeFolderKind k_gallery_folder{"gallery", ".dsbuild-gallery",
                                                   ".dsbuild-gallery/made.txt",
                                                   ".dsbuild-gallery/checksums.xxh128"};
+inline constexpr WholeFolderKind k_diff_folder{"diff", ".dsbuild-diff", ".dsbuild-diff/diff.json",
+                                               ".dsbuild-diff/checksums.xxh128"};
 
 /// Whether such a folder stands there.
 bool is_whole_folder(const std::filesystem::path& folder, const WholeFolderKind& kind);

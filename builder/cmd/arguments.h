@@ -16,12 +16,13 @@ namespace ds {
 /// default.
 struct Arguments {
   std::string target;  ///< recipe or output folder
+  std::string other;   ///< what it is compared with
   std::string image;   ///< id of an image, or the path of one of its files
   std::vector<std::string> overrides;
   std::string output_folder, store_folder, device;
   std::string shard = "1/1";
   std::uint64_t rerender = 0, seed = 0;
-  std::string format, export_folder, gallery_folder, hierarchy;
+  std::string format, export_folder, gallery_folder, diff_folder, hierarchy;
   std::string import_from, import_psb, import_folder;
   std::vector<std::string> splits, filters, only;
   std::string report_file, against;
@@ -46,6 +47,8 @@ struct Arguments {
 /// The options a verb can have. Each is declared once, in command_line.cc.
 enum class Option {
   target,
+  two_targets,
+  diff_folder,
   import_from,
   import_folder,
   copy_models,

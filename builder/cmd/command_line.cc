@@ -21,12 +21,12 @@ void change_folder(const std::string& folder) {
 /// What is left of what CLI11 finds: check_words has found all words to be known.
 std::string said(const CLI::ParseError& error, const Verb& verb) {
   const std::string text = error.what();
-  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
-    return text.starts_with('-')
-               ? fmt::format("{}: wanted {}", verb.name, text.substr(0, text.find(' ')))
-               : fmt::format(
-                     "{}: wanted a DATASET: a recipe (.toml), or the folder an earlier build wrote",
-                     verb.name);
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+    const std::string wanted = text.substr(0, text.find(' '));
+    if (wanted != "DATASET") return fmt::format("{}: wanted {}", verb.name, wanted);
+    return fmt::format(
+        "{}: wanted a DATASET: a recipe (.toml), or the folder an earlier build wrote", verb.name);
+  }
   return fmt::format("{}: {}", verb.name, error.what());
 }
 

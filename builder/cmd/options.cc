@@ -73,6 +73,18 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
       verb.add_option("DATASET", to.target, "recipe, or the folder an earlier build wrote")
           ->required();
       return;
+    case Option::two_targets:
+      verb.add_option("A", to.target, "recipe or folder of a dataset; or an image file")
+          ->required();
+      verb.add_option("B", to.other, "another; an image file beside an image file")->required();
+      return;
+    case Option::diff_folder:
+      verb.add_option(
+              "-o,--output", to.diff_folder,
+              "write pictures of the differences there, each with its largest in white; made "
+              "whole or not at all")
+          ->type_name("DIR");
+      return;
     case Option::import_from:
       verb.add_option("DIR", to.import_from,
                       "folder of models, in whatever folders and with whatever class files (.cla); "

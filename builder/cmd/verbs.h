@@ -10,6 +10,7 @@ int run_plan(const Arguments& arguments);
 int run_status(const Arguments& arguments);
 int run_check(const Arguments& arguments);
 int run_classes(const Arguments& arguments);
+int run_diff(const Arguments& arguments);
 int run_export(const Arguments& arguments);
 int run_gallery(const Arguments& arguments);
 int run_explain(const Arguments& arguments);

@@ -129,6 +129,8 @@ class UsageTest(TinyCase):
                 (["status", self.recipe, "--force"], "status has no option --force; build has it"),
                 (["--json", "plan", self.recipe], "--json stands before the verb: write dsbuild VERB --json"),
                 (["build"], "build: wanted a DATASET"),
+                (["diff"], "diff: wanted A"),
+                (["diff", self.recipe], "diff: wanted B"),
                 (["build", self.recipe, "other"], "build: does not know what to do with other; it takes DATASET"),
                 (["explain", self.recipe, "box.off/0", "three", "four", "five"],
                  "explain: does not know what to do with three four five; it takes DATASET and IMAGE"),
