@@ -175,13 +175,16 @@ TEST(Checks, ModelsCutOff) {
   };
   cut("car0.ply/0", 0, 10);
   cut("car0.ply/1", 5, 10);
-  EXPECT_THAT(found(input, "truncation"),
-              ElementsAre("note: 1/2 images cut some of their model off: car0.ply/1"));
+  EXPECT_THAT(found(input, "truncation"), IsEmpty());
+  const std::vector<CheckFinding> findings = run_checks(input, {"truncation"});
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].level, CheckLevel::note);
+  EXPECT_THAT(findings[0].examples, ElementsAre("car0.ply/1"));
   cut("car0.ply/1", 6, 10);
   cut("car1.ply/0", 0, 0);  // some of it beside the camera
   EXPECT_THAT(
       found(input, "truncation"),
-      ElementsAre("warning: 2/3 images cut off over 50 % of their model: car0.ply/1, car1.ply/0"));
+      ElementsAre("warning: 2/3 images cut off over 50 % of their model: car0.ply/1,car1.ply/0"));
 }
 
 TEST(Checks, NoiseAndLostSamples) {
