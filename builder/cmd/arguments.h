@@ -38,6 +38,8 @@ struct Arguments {
   bool adopt = false;
   bool copy = false;
   bool verbose = false;
+  std::string store_task, older, size;
+  bool forget = false;
   std::string schema;             ///< which one
   std::string topic, topic_name;  ///< of help
 
@@ -55,6 +57,8 @@ enum class Option {
   optional_target_and_image,
   topic,
   schema,
+  store_task,
+  store_limits,  ///< what gc takes away
   overrides,
   output_folder,
   store_folder,

@@ -119,6 +119,25 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
                       "manifest/dataset.json")
           ->required();
       return;
+    case Option::store_task:
+      verb.add_option("WHAT", to.store_task,
+                      "stats: what is in it, and for which datasets; gc: remove what none of them "
+                      "names; verify: read every file")
+          ->required();
+      verb.add_option("STORE", to.target, "its folder, or a dataset that it belongs to")
+          ->required();
+      return;
+    case Option::store_limits:
+      verb.add_option("--older", to.older,
+                      "gc: only what was written longer ago than this (30d, 12h)")
+          ->type_name("TIME");
+      verb.add_option(
+              "--size", to.size,
+              "gc: the oldest first, and only until the store takes no more than this (20G)")
+          ->type_name("BYTES");
+      verb.add_flag("--forget", to.forget,
+                    "gc: also what datasets name whose folder is gone; they are forgotten");
+      return;
     case Option::overrides:
       verb.add_option(
               "--set", to.overrides,

@@ -21,6 +21,8 @@ int run_accuracy(const Arguments& arguments);
 int run_import(const Arguments& arguments);
 int run_schema(const Arguments& arguments);
 int run_help(const Arguments& arguments);
+int run_store(const Arguments& arguments);
+int run_clean(const Arguments& arguments);
 int run_log(const Arguments& arguments);
 
 }  // namespace ds

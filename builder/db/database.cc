@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/db/database.h"
 
+#include "builder/db/hash_column.h"
 #include "builder/db/schema.h"
 #include "manifests/film_facts.h"
 #include "manifests/json_text.h"
@@ -9,14 +10,6 @@
 
 namespace ds {
 namespace {
-
-Hash128 hash_column(const Statement& row, int column) {
-  const std::optional<Hash128> hash = Hash128::from_hex(row.view(column));
-  if (!hash)
-    throw DamagedDatabase(
-        fmt::format("the database is damaged: \"{}\" is no hash", row.text(column)));
-  return *hash;
-}
 
 constexpr const char* k_pixel_counts = "pixel_counts";
 

@@ -72,8 +72,12 @@ std::optional<double> parse_duration(const std::string& text) {
     double value = 0;
     const auto [letter, error] = std::from_chars(at, end, value, std::chars_format::fixed);
     if (error != std::errc() || letter == end || value < 0) return std::nullopt;
-    const double unit = *letter == 'h' ? 3600 : *letter == 'm' ? 60 : *letter == 's' ? 1 : 0;
-    // Hours before minutes before seconds, each once.
+    const double unit = *letter == 'd'   ? 86400
+                        : *letter == 'h' ? 3600
+                        : *letter == 'm' ? 60
+                        : *letter == 's' ? 1
+                                         : 0;
+    // Days before hours before minutes before seconds, each once.
     if (unit == 0 || unit >= last_unit) return std::nullopt;
     last_unit = unit;
     seconds += unit * value;

@@ -91,6 +91,17 @@ TextForm form_of_parts(CanonicalText head) {
   return {head.text(), std::span(k_part_names).first<5>()};
 }
 
+}  // namespace
+
+Hash128 render_key(const PartHashes& parts) {
+  CanonicalText text;
+  for (std::size_t i = 0; i < 5; ++i)
+    text.add(k_part_names[i], parts[i].hex());
+  return hash_text(text.text());
+}
+
+namespace {
+
 // Every member, and so no fewer: a struct with one more does not compile.
 auto members(const Camera& camera) {
   const auto& [type, position, target, up, fov_deg, extent_m, lens_radius_m, focus_distance_m] =

@@ -37,6 +37,9 @@ struct ImageKeys {
   std::vector<OutputFile> outputs;
 };
 
+/// ImageKeys::render of the parts.
+Hash128 render_key(const PartHashes& parts);
+
 /// Makes keys, and keeps the texts they are hashes of. What images of one kind share (the traced
 /// program's text, canonical texts, their hashes) is made once a kind: 25,000 images take a
 /// fraction of a second. Needs no OpenCL device. Everything it refers to must outlive it.

@@ -234,6 +234,15 @@ void open_store(Dataset& dataset, const fs::path& folder, Access access, Disk& d
   dataset.database = open_database(*dataset.store, *dataset.claims);
 }
 
+constexpr const char* k_datasets = "datasets";
+
+/// A store that many datasets share is to know where they lie.
+void note_folder(const Store& store, const Pointer& pointer, Disk& disk) {
+  if (store.folder() == pointer.folder / k_state_folder) return;
+  if (folder_of_dataset(store, pointer.id) == pointer.folder) return;
+  disk.write(store.folder() / k_datasets / pointer.id, bytes_of(pointer.folder.string() + "\n"));
+}
+
 /// Writes whose the folder is. Builds that start at once in a new folder enter one dataset, not one
 /// each, and one recipe.
 Pointer enter_folder(const Dataset& dataset, const DatasetRequest& request, Pointer pointer,
@@ -251,6 +260,7 @@ Pointer enter_folder(const Dataset& dataset, const DatasetRequest& request, Poin
         other && other->id == known->id && other->store == pointer.store)
       pointer.id = new_id();
   if (known != pointer) write_pointer(dataset.folder, pointer, disk);
+  note_folder(*dataset.store, pointer, disk);
   return pointer;
 }
 
@@ -395,6 +405,39 @@ Dataset open_dataset(const DatasetRequest& request, Access access, Disk& disk) {
   std::error_code error;
   return fs::is_directory(request.target, error) ? open_folder(request, access, disk)
                                                  : open_recipe(request, access, disk);
+}
+
+fs::path folder_of_dataset(const Store& store, const std::string& id) {
+  const fs::path file = store.folder() / k_datasets / id;
+  std::error_code error;
+  if (fs::is_regular_file(file, error)) {
+    std::string text = read_text_file(file);
+    if (!text.empty() && text.back() == '\n') text.pop_back();
+    return text;
+  }
+  const fs::path above = store.folder().parent_path();
+  return store.folder().filename() == k_state_folder && holds_dataset(above, id) ? above
+                                                                                 : fs::path();
+}
+
+std::vector<std::pair<std::string, fs::path>> datasets_beside(const Store& store) {
+  std::vector<std::pair<std::string, fs::path>> found;
+  const fs::path above = store.folder().parent_path();
+  if (const auto own = read_pointer(above, true); own && own->store == normal(store.folder()))
+    found.emplace_back(own->id, above);
+  std::error_code error;
+  for (fs::directory_iterator entry(store.folder() / k_datasets, error), end;
+       !error && entry != end; entry.increment(error)) {
+    const std::string id = entry->path().filename().string();
+    if (const fs::path folder = folder_of_dataset(store, id); holds_dataset(folder, id))
+      found.emplace_back(id, folder);
+  }
+  return found;
+}
+
+bool holds_dataset(const fs::path& folder, const std::string& id) {
+  const std::optional<Pointer> pointer = read_pointer(folder, true);
+  return pointer && pointer->id == id;
 }
 
 fs::path dataset_folder(const DatasetRequest& request) {

@@ -52,6 +52,14 @@ struct Dataset {
 /// recipe; Error(recipe) for what `read_recipe` finds; Error(io).
 Dataset open_dataset(const DatasetRequest& request, Access access, Disk& disk);
 
+/// Where the last build of a dataset of a store that lies outside its folder left it; that folder, where
+/// the store lies in it. Empty where an older dsbuild made it.
+std::filesystem::path folder_of_dataset(const Store& store, const std::string& id);
+/// Id and folder of every dataset of the store that is found where its last build left it.
+std::vector<std::pair<std::string, std::filesystem::path>> datasets_beside(const Store& store);
+/// Whether the dataset of that id lies there.
+bool holds_dataset(const std::filesystem::path& folder, const std::string& id);
+
 /// The dataset's folder; where that is what was asked for, without reading the recipe. For what
 /// needs only the manifest.
 std::filesystem::path dataset_folder(const DatasetRequest& request);

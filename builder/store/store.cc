@@ -17,6 +17,10 @@ namespace fs = std::filesystem;
 constexpr const char* k_objects = "objects";
 constexpr const char* k_records = "records";
 
+const char* folder_of(Store::Kind kind) {
+  return kind == Store::Kind::object ? k_objects : k_records;
+}
+
 }  // namespace
 
 fs::path Store::path_of(const char* kind, Hash128 hash) const {
@@ -87,23 +91,41 @@ bool Store::is_object(const fs::path& file, Hash128 object) const {
   return fs::equivalent(file, path_of(k_objects, object), absent);
 }
 
-void Store::visit_records(const std::function<void(const std::string& text)>& visit) {
+void Store::visit_files(Kind kind, const std::function<void(const StoredFile&)>& visit) const {
   std::error_code error;
-  for (fs::recursive_directory_iterator entry(folder_ / k_records, error), end;
+  for (fs::recursive_directory_iterator entry(folder_ / folder_of(kind), error), end;
        !error && entry != end; entry.increment(error)) {
     std::error_code vanished;
     if (!entry->is_regular_file(vanished)) continue;
     const fs::path& file = entry->path();
-    const auto hash =
-        Hash128::from_hex(file.parent_path().filename().string() + file.filename().string());
-    if (!hash) continue;  // a killed writer's temporary
-    if (const auto bytes = read_whole(file, *hash)) {
-      std::string text(bytes->size(), '\0');
-      std::transform(bytes->begin(), bytes->end(), text.begin(),
-                     [](std::byte b) { return static_cast<char>(b); });
-      visit(text);
-    }
+    StoredFile found{
+        file,
+        Hash128::from_hex(file.parent_path().filename().string() + file.filename().string()),
+        entry->file_size(vanished),
+        {}};
+    if (!vanished) found.written = entry->last_write_time(vanished);
+    if (!vanished) visit(found);
   }
+}
+
+std::optional<std::string> Store::get_record(Hash128 record) {
+  const auto bytes = read_whole(path_of(k_records, record), record);
+  if (!bytes) return std::nullopt;
+  std::string text(bytes->size(), '\0');
+  std::transform(bytes->begin(), bytes->end(), text.begin(),
+                 [](std::byte b) { return static_cast<char>(b); });
+  return text;
+}
+
+void Store::remove(Kind kind, Hash128 hash) {
+  disk_.remove(path_of(folder_of(kind), hash));
+}
+
+void Store::visit_records(const std::function<void(const std::string& text)>& visit) {
+  visit_files(Kind::record, [&](const StoredFile& file) {
+    if (!file.hash) return;  // a killed writer's temporary
+    if (const std::optional<std::string> text = get_record(*file.hash)) visit(*text);
+  });
 }
 
 }  // namespace ds

@@ -5,6 +5,7 @@
 #include "tracer/base/hash.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -59,6 +60,21 @@ class Store {
   void put_record(const std::string& text) { put_all({}, {&text, 1}); }
   /// Calls `visit` with the text of every whole record, in no particular order.
   void visit_records(const std::function<void(const std::string& text)>& visit);
+
+  /// A file of the store as it lies there, read or not.
+  struct StoredFile {
+    std::filesystem::path path;
+    std::optional<Hash128>
+        hash;  ///< that its name stands for; nothing: a temporary, or no file of ours
+    std::uint64_t bytes = 0;
+    std::filesystem::file_time_type written;
+  };
+  enum class Kind { object, record };
+  void visit_files(Kind kind, const std::function<void(const StoredFile&)>& visit) const;
+  /// The text of a record, where it is whole.
+  std::optional<std::string> get_record(Hash128 record);
+  /// No error where there is no such file.
+  void remove(Kind kind, Hash128 hash);
 
  private:
   std::filesystem::path path_of(const char* kind, Hash128 hash) const;

@@ -67,6 +67,10 @@ std::unique_ptr<Database> open_database(Store& store, Claims& claims) {
   return database;
 }
 
+std::unique_ptr<Database> open_own_database(const Store& store) {
+  return std::make_unique<Database>(store.folder() / k_database_file);
+}
+
 std::unique_ptr<Database> open_database_copy(const Store& store) {
   std::error_code error;
   const fs::path parent = fs::temp_directory_path(error) / fmt::format("dsbuild-{}", ::getuid());

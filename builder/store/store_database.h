@@ -16,6 +16,10 @@ namespace ds {
 /// its dataset anew. Throws Error(io) where it is damaged and another process has it open.
 std::unique_ptr<Database> open_database(Store& store, Claims& claims);
 
+/// The same for whoever owns it (Claims::try_own_database) and takes things away: throws DamagedDatabase
+/// where it is damaged.
+std::unique_ptr<Database> open_own_database(const Store& store);
+
 /// Opens a copy of the store's database, as whoever may not write there wants it: SQLite has to write
 /// beside a database to read it. What is written to the copy is lost. Throws Error(io).
 std::unique_ptr<Database> open_database_copy(const Store& store);

@@ -208,6 +208,7 @@ TEST_F(KeysTest, WhatIsSharedGivesTheKeysOfWholeTexts) {
     const ImageKeys made = maker.keys(image);
     EXPECT_TRUE(std::equal(made.parts.begin(), made.parts.end() - 1, wanted.parts.begin()));
     EXPECT_EQ(made.render, wanted.render);
+    EXPECT_EQ(render_key(made.parts), made.render);
     EXPECT_EQ(maker.kept_key(image, made), wanted.kept);
     different.insert(made.render);
     maker.add_texts(image);

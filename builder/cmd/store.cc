@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/cmd/plan_text.h"
+#include "builder/cmd/stop_signal.h"
+#include "builder/cmd/verbs.h"
+#include "builder/cmd/work_progress.h"
+#include "builder/forecast/budget.h"
+#include "builder/store/store_database.h"
+#include "builder/upkeep/collect.h"
+#include "tracer/base/error.h"
+#include "tracer/base/log.h"
+#include "tracer/base/nearest.h"
+#include "tracer/base/streams.h"
+
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <thread>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A store by itself, whatever datasets it has.
+struct OpenStore {
+  std::unique_ptr<Store> store;
+  std::unique_ptr<Claims> claims;  ///< null where nobody may write
+  std::unique_ptr<Database> database;
+};
+
+fs::path store_folder_of(const Arguments& arguments, Disk& disk) {
+  std::error_code error;
+  const fs::path target = arguments.target;
+  if (fs::exists(target / "dsbuild.sqlite", error) || fs::is_directory(target / "objects", error))
+    return target;
+  const Dataset dataset = open_dataset({target, {}, {}, {}, false}, Access::records, disk);
+  if (dataset.store == nullptr)
+    fail(ErrorKind::usage, "store: wanted a store or a dataset that has one, found {}",
+         target.string());
+  return dataset.store->folder();
+}
+
+/// `alone`: waits for whoever has the database open, and others wait then.
+OpenStore open_store(const Arguments& arguments, bool alone, Disk& disk) {
+  const fs::path folder = store_folder_of(arguments, disk);
+  OpenStore open{std::make_unique<Store>(folder, disk), nullptr, nullptr};
+  if (is_read_only(folder)) {
+    if (alone) fail(ErrorKind::io, "{}: may not be written to", folder.string());
+    open.database = open_database_copy(*open.store);
+    return open;
+  }
+  open.claims = std::make_unique<Claims>(folder / "lock");
+  const std::atomic<bool>& stop = stop_on_signal();
+  for (bool told = false; alone && !open.claims->try_own_database();) {
+    if (stop) fail(ErrorKind::cancelled, "stopped; nothing is removed");
+    if (!told) warn(fmt::format("{}: waits for what has the store open", folder.string()));
+    told = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  open.database = alone ? open_own_database(*open.store) : open_database(*open.store, *open.claims);
+  return open;
+}
+
+/// A database that was lost and made anew does not know what datasets name until they are built.
+void check_all_known(const Store& store, const StoreUse& use) {
+  if (!use.unknown.empty())
+    fail(ErrorKind::usage,
+         "{}: does not know what the dataset in {} names, as after its database was lost: build it "
+         "once, "
+         "then collect",
+         store.folder().string(), use.unknown.front().string());
+  if (use.datasets.empty() && !use.files.empty())
+    fail(ErrorKind::usage,
+         "{}: knows no dataset, so all of it would go: build one first, or remove the folder",
+         store.folder().string());
+}
+
+std::string amount_text(const Amount& amount) {
+  return fmt::format("{} files, {:.1f} MB", amount.files, static_cast<double>(amount.bytes) / 1e6);
+}
+
+nlohmann::json to_json(const Amount& amount) {
+  return {{"files", amount.files}, {"bytes", amount.bytes}};
+}
+
+/// "20G", "500M", "1000": powers of 1,000.
+std::uint64_t parse_bytes(const std::string& text) {
+  double value = 0;
+  const auto [end, error] =
+      std::from_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed);
+  const std::string unit(end, text.data() + text.size());
+  static constexpr std::array<std::pair<std::string_view, double>, 5> k_units{
+      {{"", 1}, {"k", 1e3}, {"M", 1e6}, {"G", 1e9}, {"T", 1e12}}};
+  for (const auto& [name, factor] : k_units)
+    if (error == std::errc() && unit == name && value >= 0 && value * factor < 1e18)
+      return static_cast<std::uint64_t>(value * factor);
+  fail(ErrorKind::usage, "store --size: wanted a number of bytes such as 500M or 20G, got {}",
+       text);
+}
+
+int run_stats(const Arguments& arguments, Disk& disk) {
+  const OpenStore open = open_store(arguments, false, disk);
+  const StoreUse use =
+      look_at_store(*open.store, *open.database, arguments.forget, stop_on_signal());
+  Amount objects, records, unnamed;
+  for (const StoreFileUse& file : use.files) {
+    (file.kind == Store::Kind::object ? objects : records).add(file.bytes);
+    if (!file.is_named) unnamed.add(file.bytes);
+  }
+  nlohmann::json datasets = nlohmann::json::array(), kinds = nlohmann::json::object();
+  for (const DatasetUse& dataset : use.datasets)
+    datasets.push_back({{"name", dataset.row.name},
+                        {"recipe", dataset.row.recipe.string()},
+                        {"folder", dataset.folder.string()},
+                        {"gone", dataset.is_gone},
+                        {"images", dataset.images}});
+  for (const auto& [kind, amount] : use.by_kind)
+    kinds[kind] = to_json(amount);
+  if (arguments.json) {
+    print_json({{"store", open.store->folder().string()},
+                {"datasets", datasets},
+                {"objects", to_json(objects)},
+                {"records", to_json(records)},
+                {"named", kinds},
+                {"unnamed", to_json(unnamed)},
+                {"missing", use.missing},
+                {"temporaries", to_json({use.temporaries.size(), use.temporary_bytes})}});
+    return 0;
+  }
+  say(Stream::result, "{}\n", open.store->folder().string());
+  for (const DatasetUse& dataset : use.datasets)
+    say(Stream::result, "  {}: {} images, {}{}\n", dataset.row.name, dataset.images,
+        dataset.folder.empty() ? "in a folder that its next build tells" : dataset.folder.string(),
+        dataset.is_gone ? ", which is gone (gc --forget)" : "");
+  for (const auto& [kind, amount] : use.by_kind)
+    say(Stream::result, "  {}: {}\n", kind, amount_text(amount));
+  say(Stream::result, "  no dataset names: {}\n", amount_text(unnamed));
+  say(Stream::result, "  all objects: {}; records: {}\n", amount_text(objects),
+      amount_text(records));
+  if (use.missing > 0)
+    say(Stream::result,
+        "  {} objects that datasets name are missing (dsbuild build makes them again)\n",
+        use.missing);
+  if (!use.temporaries.empty())
+    say(Stream::result, "  left by killed builds: {}\n",
+        amount_text({use.temporaries.size(), use.temporary_bytes}));
+  return 0;
+}
+
+int run_gc(const Arguments& arguments, Disk& disk) {
+  CollectRequest request{std::chrono::seconds(0), std::nullopt, arguments.forget,
+                         arguments.dry_run};
+  if (!arguments.older.empty()) {
+    const std::optional<double> seconds = parse_duration(arguments.older);
+    if (!seconds)
+      fail(ErrorKind::usage, "store --older: wanted a time such as 30d, 12h or 90m, got {}",
+           arguments.older);
+    request.older = std::chrono::seconds(static_cast<std::int64_t>(*seconds));
+  }
+  if (!arguments.size.empty()) request.most_bytes = parse_bytes(arguments.size);
+  const OpenStore open = open_store(arguments, !arguments.dry_run, disk);
+  const StoreUse use =
+      look_at_store(*open.store, *open.database, arguments.forget, stop_on_signal());
+  check_all_known(*open.store, use);
+  const CollectResult result = collect(*open.store, *open.database, request, use);
+  if (arguments.json) {
+    print_json({{"objects", to_json(result.objects)},
+                {"records", to_json(result.records)},
+                {"temporaries", to_json(result.temporaries)},
+                {"kept", to_json(result.kept)},
+                {"unnamed", to_json(result.unnamed)},
+                {"forgotten", result.forgotten},
+                {"products", result.products},
+                {"dry_run", arguments.dry_run}});
+    return 0;
+  }
+  say(Stream::report, "{} objects ({}), {} records{}; {} left\n",
+      arguments.dry_run ? "would remove" : "removed", amount_text(result.objects),
+      result.records.files,
+      result.forgotten > 0 ? fmt::format(", {} datasets forgotten", result.forgotten) : "",
+      amount_text(result.kept));
+  if (request.most_bytes && result.kept.bytes > *request.most_bytes)
+    warn(fmt::format(
+        "{}: takes more than --size {}: the rest is what datasets name, or not old enough",
+        open.store->folder().string(), arguments.size));
+  for (const DatasetUse& dataset : use.datasets)
+    if (dataset.is_gone && !arguments.forget)
+      warn(
+          fmt::format("{}: nothing of the dataset {} lies there any more; --forget removes what it "
+                      "alone names",
+                      dataset.folder.string(), dataset.row.name));
+  return 0;
+}
+
+int run_store_verify(const Arguments& arguments, Disk& disk) {
+  const OpenStore open = open_store(arguments, false, disk);
+  const std::atomic<bool>& stop = stop_on_signal();
+  std::vector<std::pair<Store::Kind, Hash128>> all;
+  for (const Store::Kind kind : {Store::Kind::object, Store::Kind::record})
+    open.store->visit_files(kind, [&](const Store::StoredFile& file) {
+      if (file.hash) all.emplace_back(kind, *file.hash);
+    });
+  std::uint64_t damaged = 0, done = 0;
+  {
+    WorkProgress progress("files of the store read");
+    for (const auto& [kind, hash] : all) {
+      if (stop) fail(ErrorKind::cancelled, "stopped");
+      const bool whole = kind == Store::Kind::object ? open.store->intact(hash)
+                                                     : open.store->get_record(hash).has_value();
+      damaged += whole ? 0U : 1U;
+      progress(++done, all.size());
+    }
+  }
+  const std::uint64_t missing =
+      look_at_store(*open.store, *open.database, arguments.forget, stop).missing;
+  if (arguments.json)
+    print_json({{"files", all.size()}, {"damaged", damaged}, {"missing", missing}});
+  else
+    say(Stream::report,
+        "{} files read, {} damaged and removed; {} objects that datasets name are missing{}\n",
+        all.size(), damaged, missing,
+        damaged + missing > 0 ? "; dsbuild build makes them again" : "");
+  return damaged + missing > 0 ? 1 : 0;
+}
+
+}  // namespace
+
+int run_store(const Arguments& arguments) {
+  static constexpr std::array<std::pair<std::string_view, int (*)(const Arguments&, Disk&)>, 3>
+      k_tasks{{{"stats", run_stats}, {"gc", run_gc}, {"verify", run_store_verify}}};
+  if (arguments.store_task != "gc" && (!arguments.older.empty() || !arguments.size.empty()))
+    fail(ErrorKind::usage, "store {}: --older and --size are for gc", arguments.store_task);
+  RealDisk disk;
+  std::vector<std::string_view> known;
+  for (const auto& [name, run] : k_tasks) {
+    if (name == arguments.store_task) return run(arguments, disk);
+    known.push_back(name);
+  }
+  fail(ErrorKind::usage, "store: wanted {}, got {}{}", fmt::format("{}", fmt::join(known, ", ")),
+       arguments.store_task, did_you_mean(arguments.store_task, known));
+}
+
+}  // namespace ds
