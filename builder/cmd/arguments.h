@@ -38,6 +38,7 @@ struct Arguments {
   bool adopt = false;
   bool copy = false;
   bool verbose = false;
+  std::string shell, init_file;
   std::string store_task, older, size;
   bool forget = false;
   std::string schema;             ///< which one
@@ -57,6 +58,9 @@ enum class Option {
   optional_target_and_image,
   topic,
   schema,
+  shell_kind,
+  init_from,
+  init_file,
   store_task,
   store_limits,  ///< what gc takes away
   overrides,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/command_line.h"
 
-#include "builder/plan/dataset_manifest.h"
+#include "builder/cmd/version.h"
 #include "tracer/base/error.h"
 #include "tracer/base/streams.h"
 #include "tracer/device/opencl.h"
@@ -42,7 +42,8 @@ const Verb* named_verb(const CLI::App& app) {
 std::unique_ptr<CommandLine> make_command_line() {
   auto line = std::make_unique<CommandLine>();
   CLI::App& app = line->app;
-  app.set_version_flag("--version", "dsbuild " + program_version(), "print the version and exit");
+  app.set_version_flag("--version", "dsbuild",
+                       "print version, commit, processor and OpenCL, and exit");
   app.set_help_flag("-h,--help", "print this help and exit");
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   app.add_option("-C", line->folder, "change to this folder first")->type_name("DIR");
@@ -67,8 +68,8 @@ int run_command_line(std::span<const char* const> words) {
     const Verb* verb = named_verb(app);
     write_text(Stream::result, help_of(verb == nullptr ? "" : verb->name));
     return 0;
-  } catch (const CLI::CallForVersion& version) {
-    say(Stream::result, "{}\n", version.what());
+  } catch (const CLI::CallForVersion&) {
+    say(Stream::result, "{}\n", version_text());
     return 0;
   } catch (const CLI::ParseError& error) {
     const Verb* verb = named_verb(app);

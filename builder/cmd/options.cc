@@ -119,6 +119,16 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
                       "manifest/dataset.json")
           ->required();
       return;
+    case Option::shell_kind:
+      verb.add_option("WHAT", to.shell, "bash, zsh or fish; or man, for man -l")->required();
+      return;
+    case Option::init_from:
+      verb.add_option("DIR", to.import_from, "folder of models")->required();
+      return;
+    case Option::init_file:
+      verb.add_option("-o,--output", to.init_file, "the recipe [DIR's name, ending in .toml]")
+          ->type_name("FILE");
+      return;
     case Option::store_task:
       verb.add_option("WHAT", to.store_task,
                       "stats: what is in it, and for which datasets; gc: remove what none of them "

@@ -20,6 +20,8 @@ int run_devices(const Arguments& arguments);
 int run_accuracy(const Arguments& arguments);
 int run_import(const Arguments& arguments);
 int run_schema(const Arguments& arguments);
+int run_init(const Arguments& arguments);
+int run_completions(const Arguments& arguments);
 int run_help(const Arguments& arguments);
 int run_store(const Arguments& arguments);
 int run_clean(const Arguments& arguments);

@@ -11,7 +11,7 @@ TOPICS = ["textures", "materials", "shapes", "objects", "lights", "film", "recip
 
 class UsageTest(TinyCase):
     def test_help_and_version(self):
-        self.assertRegex(self.run_it("--version").out, r"^dsbuild \d+\.\d+\.\d+\n$")
+        self.assertRegex(self.run_it("--version").out, r"^dsbuild \d+\.\d+\.\d+ \(commit ")
         overview = self.run_it("--help")
         self.assertEqual(overview.code, 0)
         self.assertIn("Exit codes: 0", overview.out)

@@ -4,7 +4,6 @@ pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET GLOBAL OpenImageIO)
 add_library(dsbuild_images MODULE image_codec_oiio.cc "${CMAKE_SOURCE_DIR}/tracer/base/error.cc")
 target_link_libraries(dsbuild_images PRIVATE ds_options fmt::fmt PkgConfig::OIIO)
 set_target_properties(dsbuild_images PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}")
-install(TARGETS dsbuild_images LIBRARY DESTINATION lib/dsbuild)
 
 ds_library(ds_images
   SOURCES develop.cc exr_header.cc image_claims.cc image_files.cc image_meaning.cc images.cc loaded_images.cc plane_file.cc png_chunks.cc strict_math.cc tiff_directory.cc

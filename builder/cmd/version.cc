@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/cmd/version.h"
+
+#include "builder/plan/dataset_manifest.h"
+#include "tracer/base/error.h"
+#include "tracer/device/opencl.h"
+
+#include "commit.h"
+
+#include <set>
+
+namespace ds {
+namespace {
+
+/// The levels of the x86-64 psABI.
+std::string processor_level() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("x86-64-v4")) return "x86-64-v4";
+  if (__builtin_cpu_supports("x86-64-v3")) return "x86-64-v3";
+  if (__builtin_cpu_supports("x86-64-v2")) return "x86-64-v2";
+  return "x86-64";
+#elif defined(__aarch64__)
+  return "aarch64";
+#else
+  return "of another kind";
+#endif
+}
+
+std::string platforms_text() {
+  std::set<std::string> platforms;
+  try {
+    for (const DeviceInfo& device : list_devices())
+      platforms.insert(fmt::format("{}, driver {}", device.platform, device.driver));
+  } catch (const Error& error) {
+    return fmt::format("none ({})", error.what());
+  }
+  return platforms.empty() ? "no device" : fmt::format("{}", fmt::join(platforms, "; "));
+}
+
+}  // namespace
+
+std::string version_text() {
+  return fmt::format("dsbuild {} (commit {})\nprocessor: {}\nOpenCL: {}", program_version(),
+                     k_commit, processor_level(), platforms_text());
+}
+
+}  // namespace ds
