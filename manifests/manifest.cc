@@ -104,6 +104,7 @@ json to_json_value(const ImageRecord& image) {
               {"camera", parts[3].hex()},
               {"engine", parts[4].hex()}}}};
   if (image.metres_per_pixel) line["metres_per_pixel"] = *image.metres_per_pixel;
+  if (image.fold) line["fold"] = *image.fold;
   if (!image.other_classes.empty()) line["classes"] = image.other_classes;
   add_counted(line, image);
   add_pose(line, image);
@@ -156,6 +157,7 @@ json to_json_value(const DatasetRecord& dataset) {
         {"box", "[x, y, width, height] in whole pixels around the model in the mask"},
         {"model_box", "[least, most] of the model file's coordinates; box_m in the world"}}}};
   if (!dataset.about.empty()) object["about"] = dataset.about;
+  if (!dataset.shapes.empty()) object["shapes"] = dataset.shapes;
   if (!dataset.hierarchies.empty()) object["hierarchies"] = dataset.hierarchies;
   for (const auto& [name, plane] : dataset.planes)
     object["planes"][name] = {{"encoding", plane.encoding}, {"convention", plane.convention}};

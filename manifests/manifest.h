@@ -59,6 +59,8 @@ struct ImageRecord {
   std::string id, model, class_path, split, material, environment, view;
   /// Index of DatasetRecord::class_paths; null in the file, and absent here, where it has no class.
   std::optional<std::uint64_t> class_id{};
+  /// Of cross-validation; a field only where the image has one.
+  std::optional<std::uint64_t> fold{};
   /// "classes": class path by DatasetRecord::hierarchies, "" for none. Not there where those are not.
   std::map<std::string, std::string> other_classes{};
   std::vector<FileRecord> files;
@@ -112,6 +114,8 @@ struct DatasetRecord {
   std::vector<LicenceRecord> licences;  ///< found beside the assets, as group_licences gives them
   /// By name, of the files beside the picture. Not there where there are none.
   std::vector<std::pair<std::string, PlaneRecord>> planes{};
+  /// Model -> shape_of its mesh, of all models that have one; not there where none has.
+  std::map<std::string, std::string> shapes{};
   /// Model -> what its file held that no mesh can, and how often, by MeshReport's names. Only
   /// models that were mended; "mended_models" is not there where none was.
   std::vector<std::pair<std::string, MendedDamage>> mended_models{};

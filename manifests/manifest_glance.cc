@@ -110,6 +110,7 @@ std::optional<LineGlance> glance_at(std::string_view line) {
     file.xxh128 = files.hash(R"("xxh128":)");
   }
   glance.files_key = at.hash(R"("files_key":)");
+  if (at.has(R"("fold":)")) glance.fold = at.count(R"("fold":)");
   const std::uint64_t height = at.count(R"("height":)");
   glance.id = at.text(R"("id":)");
   glance.material = at.text(R"("material":)");
@@ -148,6 +149,7 @@ LineGlance glance_at(const ImageRecord& image) {
       static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height),
       image.pixel_counts,
       image.class_id,
+      image.fold,
       image.other_classes.empty() ? "" : canonical_json(image.other_classes),
       image.render_key,
       image.files_key};

@@ -21,7 +21,7 @@ struct LineGlance {
   std::vector<File> files;
   std::uint64_t pixels = 0;  ///< width times height
   PixelCounts pixel_counts;
-  std::optional<std::uint64_t> class_id;
+  std::optional<std::uint64_t> class_id, fold;
   std::string other_classes;  ///< as canonical JSON; "" where there are none
   Hash128 render_key, files_key;
 };

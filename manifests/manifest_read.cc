@@ -213,6 +213,7 @@ ImageRecord image_from(const std::string& line, const SourcePlace& place,
   fields.text("split", image.split);
   if (const auto id = object->find("class_id"); id != object->end() && !id->is_null())
     fields.count("class_id", image.class_id.emplace());
+  if (object->contains("fold")) fields.count("fold", image.fold.emplace());
   if (object->contains("classes")) {
     std::vector<std::pair<std::string, std::string>> classes;
     read_members(fields, *object, place, diagnostics, "classes", classes,
@@ -375,6 +376,12 @@ DatasetRecord dataset_from_json(const std::string& text, const std::string& file
       read_members(fields, *object, place, diagnostics, "about", about,
                    [](Fields& f, const char* name, std::string& to) { f.text(name, to); });
       dataset.about = {about.begin(), about.end()};
+    }
+    if (object->contains("shapes")) {
+      std::vector<std::pair<std::string, std::string>> shapes;
+      read_members(fields, *object, place, diagnostics, "shapes", shapes,
+                   [](Fields& f, const char* name, std::string& to) { f.text(name, to); });
+      dataset.shapes = {shapes.begin(), shapes.end()};
     }
     if (object->contains("hierarchies")) {
       std::vector<std::pair<std::string, std::vector<std::string>>> hierarchies;

@@ -114,6 +114,7 @@ json image_schema() {
       {"class_id", said(or_null(k_count), "index of class_paths of dataset.json")},
       {"classes", said(map_of(k_text), "class path by further classification")},
       {"split", {{"enum", {"train", "test", ""}}}},
+      {"fold", said(k_count, "of cross-validation; not of the test split")},
       {"material", k_text},
       {"environment", k_text},
       {"view", k_text},
@@ -153,9 +154,9 @@ json image_schema() {
                            {"camera", k_hash},
                            {"engine", k_hash}},
                           {"model", "material", "environment", "camera", "engine"})}};
-  json required =
-      fields_of(fields, {"classes", "metres_per_pixel", "box", "visible_fraction", "occlusion",
-                         "truncation", "model_to_world", "model_to_camera", "model_box", "box_m"});
+  json required = fields_of(
+      fields, {"classes", "fold", "metres_per_pixel", "box", "visible_fraction", "occlusion",
+               "truncation", "model_to_world", "model_to_camera", "model_box", "box_m"});
   return headed(object_of(std::move(fields), std::move(required)),
                 "A line of manifest/images.jsonl of a dataset of dsbuild");
 }
@@ -172,6 +173,8 @@ json dataset_schema() {
       {"seed", k_count},
       {"class_paths", said(texts, "a class's id is its index")},
       {"hierarchies", said(map_of(texts), "classes of further classifications")},
+      {"shapes", said(map_of({{"type", "string"}, {"pattern", "^[0-9a-f]{76}$"}}),
+                      "of models: what is alike of copies that are turned, scaled or meshed anew")},
       {"counts", map_of(k_count)},
       {"licences",
        {{"type", "array"},
@@ -184,7 +187,7 @@ json dataset_schema() {
                                     {"count", "of", "examples"}))},
       {"mended_models", map_of(map_of(k_count))}};
   json required =
-      fields_of(fields, {"about", "hierarchies", "planes", "concerns", "mended_models"});
+      fields_of(fields, {"about", "shapes", "hierarchies", "planes", "concerns", "mended_models"});
   return headed(object_of(std::move(fields), std::move(required)),
                 "manifest/dataset.json of a dataset of dsbuild");
 }

@@ -261,7 +261,7 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
     case Option::filters:
       verb.add_option(
               "--filter", to.filters,
-              "images only whose class, model, material, environment or view matches, as "
+              "images only whose class, model, material, environment, view or fold matches, as "
               "class=vehicle/* (repeatable: of one key any, of several all; * is any text, ? any "
               "character; a class means those below it too, a model its file's stem)")
           ->allow_extra_args(false)

@@ -112,20 +112,22 @@ void Database::put_content(const std::filesystem::path& file, const FileStamp& s
 
 std::optional<KnownModel> Database::find_model(Hash128 content, int reader) {
   Statement row = connection_->prepare(
-      "SELECT geometry, uvs, colors, damage, extent, normals FROM geometry "
+      "SELECT geometry, uvs, colors, damage, extent, normals, shape FROM geometry "
       "WHERE content = ?1 AND reader = ?2");
   if (!row.bind(1, content.hex()).bind(2, std::int64_t{reader}).step()) return std::nullopt;
   const auto e = json_column<std::array<double, 9>>(row, 4);
   return KnownModel{
       {hash_column(row, 0), hash_column(row, 1), hash_column(row, 2), hash_column(row, 5)},
       json_column<MendedDamage>(row, 3),
-      {{{e[0], e[1], e[2]}, {e[3], e[4], e[5]}}, {e[6], e[7], e[8]}}};
+      {{{e[0], e[1], e[2]}, {e[3], e[4], e[5]}}, {e[6], e[7], e[8]}},
+      std::string(row.text(6))};
 }
 
 void Database::put_model(Hash128 content, int reader, const KnownModel& model) {
   const auto& [box, centroid] = model.extent;
   const auto& [least, most] = box;
-  connection_->prepare("INSERT OR REPLACE INTO geometry VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)")
+  connection_
+      ->prepare("INSERT OR REPLACE INTO geometry VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)")
       .bind(1, content.hex())
       .bind(2, std::int64_t{reader})
       .bind(3, model.hashes.shape.hex())
@@ -136,6 +138,7 @@ void Database::put_model(Hash128 content, int reader, const KnownModel& model) {
       .bind(8, nlohmann::json({least.x, least.y, least.z, most.x, most.y, most.z, centroid.x,
                                centroid.y, centroid.z})
                    .dump())
+      .bind(9, model.shape)
       .run();
 }
 

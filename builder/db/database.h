@@ -73,6 +73,7 @@ struct KnownModel {
   MeshHashes hashes;
   MendedDamage damage;
   MeshExtent extent;
+  std::string shape{};  ///< shape_of
 
   bool operator==(const KnownModel&) const = default;
 };

@@ -22,6 +22,7 @@ CREATE TABLE geometry (
   damage TEXT NOT NULL,       -- mended, as JSON array of [name, count]
   uvs TEXT NOT NULL, colors TEXT NOT NULL, normals TEXT NOT NULL,   -- their hashes; 0 for none
   extent TEXT NOT NULL,       -- MeshExtent: JSON array of the least, greatest and mean x y z
+  shape TEXT NOT NULL,        -- shape_of
   PRIMARY KEY (content, reader)
 ) WITHOUT ROWID;
 CREATE TABLE image_bounds (   -- of textures' pixels as they are used
@@ -92,9 +93,9 @@ CREATE INDEX product_rejected ON product (key)
   WHERE rejected_samples > 0 AND kind = 'image';
 CREATE INDEX product_capped ON product (key)
   WHERE instr(facts, '"capped":true') > 0 AND kind = 'image';
-PRAGMA user_version = 11;
+PRAGMA user_version = 12;
 )sql";
-static_assert(k_schema_version == 11, "the last line of k_tables states the version too");
+static_assert(k_schema_version == 12, "the last line of k_tables states the version too");
 
 /// From version 1 to 2.
 constexpr const char* k_add_facts = R"sql(
@@ -128,12 +129,13 @@ CREATE INDEX IF NOT EXISTS product_capped ON product (key)
   WHERE instr(facts, '"capped":true') > 0 AND kind = 'image';
 )sql";
 
-/// From version 10, and of any before it, to 11: what stood of models tells too little of them.
+/// From version 11, and of any before it, to 12: what stood of models tells too little of them.
 constexpr const char* k_new_geometry = R"sql(
 DROP TABLE geometry;
 CREATE TABLE geometry (
   content TEXT NOT NULL, reader INTEGER NOT NULL, geometry TEXT NOT NULL, damage TEXT NOT NULL,
   uvs TEXT NOT NULL, colors TEXT NOT NULL, normals TEXT NOT NULL, extent TEXT NOT NULL,
+  shape TEXT NOT NULL,
   PRIMARY KEY (content, reader)
 ) WITHOUT ROWID;
 CREATE TABLE IF NOT EXISTS image_bounds (
@@ -149,7 +151,7 @@ CREATE TABLE IF NOT EXISTS known (
   question TEXT NOT NULL, answer TEXT NOT NULL,
   PRIMARY KEY (program, question)
 ) WITHOUT ROWID;
-PRAGMA user_version = 11;
+PRAGMA user_version = 12;
 )sql";
 
 std::int64_t user_version(Connection& connection) {

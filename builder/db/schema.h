@@ -20,7 +20,7 @@ namespace ds {
 ///   10: geometry.normals; rows of older versions are dropped likewise
 /// An older file is converted when it is opened; a newer one is refused, since writing to it could
 /// lose what this program does not know.
-inline constexpr int k_schema_version = 11;
+inline constexpr int k_schema_version = 12;
 
 /// Makes the tables where the file is new. Throws Error(io) for a file of a newer version,
 /// DamagedDatabase for one that is some other program's.

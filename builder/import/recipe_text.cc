@@ -22,9 +22,9 @@ std::string classes_text(const RecipeFacts& facts) {
     text += fmt::format("more = [{}]  # further classifications\n", files);
   }
   if (!facts.has_splits)
-    text +=
-        "split = { test = 0.25, by = \"model\" }  # a quarter of the models, by their names' "
-        "hash\n";
+    text += fmt::format(
+        "split = {{ test = 0.25{} }}  # a quarter of the models, by their names' hash\n",
+        facts.has_classes ? ", stratified = true" : "");
   return text;
 }
 

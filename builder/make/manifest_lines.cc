@@ -81,7 +81,7 @@ ImageFacts facts_of(const ImageSpec& spec, const PixelCounts& counts) {
 /// Whether the line labels the image as the plan does.
 bool Lines::is_labelled(const LineGlance& line, const ImageSpec& spec) const {
   return line.class_path == *spec.class_path && line.split == *spec.split &&
-         line.class_id == class_id_of(plan_, *spec.class_path) &&
+         line.fold == spec.fold && line.class_id == class_id_of(plan_, *spec.class_path) &&
          line.other_classes ==
              (spec.other_classes->empty() ? "" : canonical_json(*spec.other_classes));
 }
@@ -166,6 +166,7 @@ void Lines::take_older_of_plan(const OlderLine& line, const PlannedImage& image)
   ImageRecord record = line.record();
   record.class_path = image.spec.class_path;
   record.split = image.spec.split;
+  record.fold = image.spec.fold;
   record.class_id = class_id_of(plan_, record.class_path);
   record.other_classes = image.spec.other_classes;
   if (others) {

@@ -70,7 +70,7 @@ void look_at_labels(std::vector<Concern>& concerns, const Recipe& recipe,
 
 void look_at_splits(std::vector<Concern>& concerns, const Recipe& recipe,
                     const std::vector<ImageFacts>& images, const std::vector<ImageFacts>& pending) {
-  const bool by_chance = recipe.split_test_fraction.has_value();
+  const bool by_chance = recipe.split.test || !recipe.split.held_out.empty();
   const bool by_table = !recipe.classes_from.empty() && recipe.labels.has_splits();
   Concern& empty = concern(concerns, "splits_empty");
   const auto look_at = [&](const char* split, bool wanted) {

@@ -62,6 +62,7 @@ ImageRecord image_record(const PlannedImage& image, const Recipe& recipe, const 
   record.model = spec.model_name;
   record.class_path = spec.class_path;
   record.split = spec.split;
+  record.fold = spec.fold;
   record.class_id = class_id_of(plan, *spec.class_path);
   record.other_classes = spec.other_classes;
   record.material = spec.material_name;
@@ -134,6 +135,8 @@ DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
                                            header_comment("planes", plane.type->name)});
   for (const auto& [model, what] : plan.mended)
     if (models.contains(model)) record.mended_models.emplace_back(model, what.damage);
+  for (const auto& [model, shape] : plan.shapes)
+    if (models.contains(model)) record.shapes.emplace(model, shape);
   std::vector<std::pair<std::string, std::string>> texts;
   for (const auto& [kind, assets] : licensed_assets(recipe))
     for (auto& licence : licences_beside(kind, assets))

@@ -9,6 +9,7 @@
 #include "tracer/base/log.h"
 #include "tracer/render/images.h"
 #include "tracer/render/render.h"
+#include "tracer/scene/mesh_shape.h"
 #include "tracer/scene/sdl.h"
 
 #include <utility>
@@ -76,8 +77,8 @@ KnownModel Inputs::look_at_model(const std::filesystem::path& file) {
   const bool new_model = !known;
   if (!known) {
     const Model model = read_model(file);
-    known =
-        KnownModel{mesh_hashes(model.mesh), damage_and_facts(model.report), extent_of(model.mesh)};
+    known = KnownModel{mesh_hashes(model.mesh), damage_and_facts(model.report),
+                       extent_of(model.mesh), shape_of(model.mesh)};
   }
   if (new_content || new_model)
     new_models_.push_back(
@@ -91,6 +92,7 @@ const Inputs::ModelFacts& Inputs::model(const std::filesystem::path& file) {
     ModelFacts facts;
     facts.hashes = known.hashes;
     facts.extent = known.extent;
+    facts.shape = known.shape;
     facts.has.normals = known.hashes.normals != Hash128{};
     for (const auto& [name, count] : known.damage) {
       const MeshReportColumn* const column = mesh_report_column(name);

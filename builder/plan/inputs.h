@@ -74,6 +74,8 @@ class Inputs {
   MeshExtras model_has(const std::filesystem::path& file) { return model(file).has; }
   /// Where it lies in its file's coordinates; throws likewise.
   const MeshExtent& model_extent(const std::filesystem::path& file) { return model(file).extent; }
+  /// shape_of it; throws likewise.
+  const std::string& model_shape(const std::filesystem::path& file) { return model(file).shape; }
   /// As ModelMeshes::get, of the model that `model_hashes` saw.
   Mesh model_mesh(const std::filesystem::path& file, const NormaliseOptions& options) {
     return meshes_.get(model_source(file, options));
@@ -116,6 +118,7 @@ class Inputs {
     MendedDamage damage, unlikely;
     MeshExtras has;
     MeshExtent extent;
+    std::string shape;
   };
   const ModelFacts& model(const std::filesystem::path& file);
   KnownModel look_at_model(const std::filesystem::path& file);

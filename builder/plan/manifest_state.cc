@@ -42,6 +42,7 @@ DatasetRecord description(const Recipe& recipe, const Plan& plan) {
   DatasetRecord record = dataset_record(recipe, plan, {});
   for (const auto& [model, what] : plan.mended)
     record.mended_models.emplace_back(model, what.damage);
+  record.shapes = plan.shapes;
   return record;
 }
 
@@ -59,6 +60,7 @@ Hash128 hash_of_labels(DatasetRecord record, const Plan& plan) {
       add_word(hash, *(image.spec.*label.wanted));
     for (const auto& [hierarchy, path] : *image.spec.other_classes)
       add_word(hash, path);
+    if (image.spec.fold) add_word(hash, std::to_string(*image.spec.fold));
   }
   return hash.hash();
 }
@@ -134,15 +136,21 @@ void compare_images(const Plan& plan, const std::vector<ImageRecord>& records,
       behind.push_back(
           fmt::format("{} of {} image{} ({})", label.name, count, count == 1 ? "" : "s", first));
   }
-  std::size_t others = 0;
-  for (const PlannedImage& image : plan.images) {
-    const auto record = by_id.find(image.spec.id);
-    if (record != by_id.end() && !image.stale() &&
-        record->second->other_classes != *image.spec.other_classes)
-      ++others;
-  }
-  if (others > 0)
-    behind.push_back(fmt::format("classes.more of {} image{}", others, others == 1 ? "" : "s"));
+  const auto count_of = [&](const char* name, const auto& differs) {
+    std::size_t count = 0;
+    for (const PlannedImage& image : plan.images) {
+      const auto record = by_id.find(image.spec.id);
+      if (record != by_id.end() && !image.stale() && differs(*record->second, image.spec)) ++count;
+    }
+    if (count > 0)
+      behind.push_back(fmt::format("{} of {} image{}", name, count, count == 1 ? "" : "s"));
+  };
+  count_of("classes.more", [](const ImageRecord& record, const ImageSpec& spec) {
+    return record.other_classes != *spec.other_classes;
+  });
+  count_of("fold", [](const ImageRecord& record, const ImageSpec& spec) {
+    return record.fold != spec.fold;
+  });
 }
 
 /// "licences: models/a.off, models/b.off and 3 more"
@@ -234,6 +242,7 @@ void compare_datasets(const DatasetRecord& before, const DatasetRecord& after,
     behind.push_back("licence: " + change(before.licence, after.licence));
   add_named(behind, "licence texts", differing(licence_texts(before), licence_texts(after)));
   add_named(behind, "class ids", differing(class_ids(before), class_ids(after)));
+  add_named(behind, "shapes", differing(before.shapes, after.shapes));
   add_named(behind, "mended models", differing(mended_models(before), mended_models(after)));
   compare_concerns(before.concerns, after.concerns, behind);
   std::vector<std::string> settings =

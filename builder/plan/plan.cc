@@ -354,6 +354,8 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
                                   MendedModel{image.spec.model_file, damage});
         plan.extents.try_emplace(image.spec.model_file->native(),
                                  inputs.model_extent(image.spec.model_file));
+        if (const std::string& shape = inputs.model_shape(image.spec.model_file); !shape.empty())
+          plan.shapes.try_emplace(image.spec.model_name, shape);
         model = image.spec.model_file;
       }
       planner.plan(image, known);

@@ -97,6 +97,7 @@ struct Plan {
   std::map<std::string, MendedModel> mended;  ///< by model name, of all shards' images
   ClassIds class_ids;                         ///< of all shards' images
   std::map<std::string, MeshExtent> extents;  ///< by model file, of those that can be read
+  std::map<std::string, std::string> shapes;  ///< Inputs::model_shape by model name, likewise
   /// Those of all shards' images that are known before any is made: assets_unphysical,
   /// sizes_unlikely, names_by_case, meshes_damaged, models_unlikely. Findings, but for names_by_case,
   /// were warned of when they were found.

@@ -256,15 +256,6 @@ bool read_class_files(Settings& settings, Recipe& recipe) {
 void read_classes(Settings& settings, Recipe& recipe) {
   const bool has_files = read_class_files(settings, recipe);
   const bool has_source = read_one_source(settings, recipe);
-  if (const RecipeValue* test = settings.find("classes.split.test")) {
-    recipe.split_test_fraction = test->number();
-    if (has_files)
-      settings.complain(*test, "classes.split.test",
-                        "must not be given together with classes.train or classes.test");
-    else if (recipe.labels.has_splits())
-      settings.complain(*test, "classes.split.test",
-                        "must not be given where classes.from says what is train and test");
-  }
   if ((has_files || has_source) && settings.diagnostics().empty()) match_labels(settings, recipe);
   for (const auto& file : {recipe.train_classes, recipe.test_classes, recipe.class_table})
     if (file) recipe.class_files.push_back(*file);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "builder/recipe/balanced.h"
 #include "builder/recipe/recipe.h"
+#include "builder/recipe/seeded_hash.h"
+#include "builder/recipe/splits.h"
 #include "tracer/base/error.h"
-#include "tracer/base/hash.h"
 
 #include <algorithm>
 #include <charconv>
@@ -17,29 +19,9 @@ namespace fs = std::filesystem;
 
 /// What a random number is for, so that no two choices share one. Part of every dataset made: never
 /// change a text.
-constexpr std::string_view k_for_split = "split";
 constexpr std::string_view k_for_material = "material";
 constexpr std::string_view k_for_environment = "environment";
 constexpr std::string_view k_for_image = "image";
-
-/// 64 bits that depend on the seed, the purpose and the words, each delimited so that ("ab", "c")
-/// is not ("a", "bc").
-std::uint64_t seeded_hash(std::uint64_t seed, std::string_view purpose,
-                          std::initializer_list<std::string_view> words) {
-  std::string text = fmt::format_int(seed).str();
-  (text += '\n') += purpose;
-  for (const std::string_view word : words) {
-    const fmt::format_int size(word.size());
-    (text += '\n').append(size.data(), size.size());
-    (text += ' ') += word;
-  }
-  return hash64_text(text);
-}
-
-/// The highest 53 bits: what a double, and so every JSON reader, holds exactly.
-std::uint64_t top_53_bits(std::uint64_t hash) {
-  return hash >> 11;
-}
 
 /// How one of the two axes, material or environment, is assigned.
 struct Axis {
@@ -66,9 +48,13 @@ std::uint64_t view_number(std::string_view name) {
 /// What one axis gives each view of a model: what is of the model is asked once for all its views.
 class Choice {
  public:
-  Choice(const Recipe& recipe, const Axis& axis) : recipe_(recipe), axis_(axis) {
-    for (const fs::path& path : axis.candidates)
-      assets_.push_back({path, axis.name(path)});
+  Choice(const Recipe& recipe, const Axis& axis, const Splits& splits)
+      : recipe_(recipe), axis_(axis) {
+    for (const fs::path& path : axis.candidates) {
+      names_.push_back(axis.name(path));
+      assets_.push_back({path, names_.back()});
+    }
+    if (axis.assign == Assign::balanced && !assets_.empty()) balance(splits);
     if (axis.assign != Assign::cycle) return;
     for (const std::string& view : recipe.view_names)
       view_numbers_.push_back(view_number(view));
@@ -79,39 +65,53 @@ class Choice {
   std::span<const Asset> of_view(std::size_t view) const;
 
  private:
-  std::size_t highest_hash(std::string_view view) const;
+  void balance(const Splits& splits);
+  std::size_t chosen(const std::string& view) const;
 
   const Recipe& recipe_;
   Axis axis_;
+  std::vector<std::string> names_;
   std::vector<Asset> assets_;
   std::vector<std::uint64_t> view_numbers_;  ///< where they cycle
+  /// By model and view, "" for all views, where they are balanced.
+  std::map<std::pair<std::string, std::string>, std::size_t> balanced_;
   std::string model_;
   std::uint64_t start_ = 0;   ///< of the cycle
   std::size_t of_model_ = 0;  ///< chosen for all views
 };
 
-std::size_t Choice::highest_hash(std::string_view view) const {
-  std::size_t best = 0;
-  std::uint64_t highest = 0;
-  for (std::size_t i = 0; i < assets_.size(); ++i) {
-    const std::string_view name = *assets_[i].name;
-    const std::uint64_t hash = axis_.per == ChoosePer::model
-                                   ? seeded_hash(recipe_.seed, axis_.purpose, {model_, name})
-                                   : seeded_hash(recipe_.seed, axis_.purpose, {model_, view, name});
-    if (i == 0 || hash > highest) {
-      best = i;
-      highest = hash;
-    }
+void Choice::balance(const Splits& splits) {
+  std::map<std::pair<std::string, std::string>, std::vector<Chooser>> groups;  // class, split
+  for (const ModelFile& model : recipe_.models) {
+    const ModelLabel label = splits.of_model(model.name);
+    std::vector<Chooser>& group = groups[{label.class_path, label.split}];
+    if (axis_.per == ChoosePer::model)
+      group.push_back({model.name, ""});
+    else
+      for (const std::string& view : recipe_.view_names)
+        group.push_back({model.name, view});
   }
-  return best;
+  for (const auto& [label, group] : groups) {
+    const auto choices = choose_balanced(recipe_.seed, axis_.purpose, group, names_);
+    for (std::size_t i = 0; i < group.size(); ++i)
+      balanced_.try_emplace({group[i].model, group[i].view}, choices[i]);
+  }
+}
+
+/// `view` is "" for all of them.
+std::size_t Choice::chosen(const std::string& view) const {
+  return axis_.assign == Assign::balanced
+             ? balanced_.at({model_, view})
+             : highest_hash(recipe_.seed, axis_.purpose, {model_, view}, names_);
 }
 
 void Choice::start_model(const std::string& model) {
   model_ = model;
+  if (assets_.empty()) return;
   if (axis_.assign == Assign::cycle)
     start_ = seeded_hash(recipe_.seed, axis_.purpose, {model_});
-  else if (axis_.assign == Assign::random && axis_.per == ChoosePer::model)
-    of_model_ = highest_hash({});
+  else if (axis_.assign != Assign::all && axis_.per == ChoosePer::model)
+    of_model_ = chosen("");
 }
 
 std::span<const Asset> Choice::of_view(std::size_t view) const {
@@ -121,17 +121,9 @@ std::span<const Asset> Choice::of_view(std::size_t view) const {
     const std::size_t count = assets_.size();
     return std::span(assets_).subspan((start_ % count + view_numbers_[view]) % count, 1);
   }
-  const std::size_t chosen =
-      axis_.per == ChoosePer::model ? of_model_ : highest_hash(recipe_.view_names[view]);
-  return std::span(assets_).subspan(chosen, 1);
-}
-
-ModelLabel label_of(const Recipe& recipe, const std::string& model) {
-  const ModelLabel label = recipe.labels.find(model).value_or(ModelLabel{});
-  if (!recipe.split_test_fraction) return label;
-  const double share =
-      static_cast<double>(top_53_bits(seeded_hash(recipe.seed, k_for_split, {model}))) * 0x1p-53;
-  return {label.class_path, share < *recipe.split_test_fraction ? "test" : "train"};
+  const std::size_t number =
+      axis_.per == ChoosePer::model ? of_model_ : chosen(recipe_.view_names[view]);
+  return std::span(assets_).subspan(number, 1);
 }
 
 std::map<std::string, std::string> other_classes_of(const Recipe& recipe,
@@ -140,6 +132,16 @@ std::map<std::string, std::string> other_classes_of(const Recipe& recipe,
   for (const auto& [name, labels] : recipe.hierarchies)
     classes.emplace(name, labels.find(model).value_or(ModelLabel{}).class_path);
   return classes;
+}
+
+/// Split and fold of an image whose other fields stand.
+void label_image(ImageSpec& image, const Splits& splits, SplitBy by, const ModelLabel& label) {
+  const std::string& thing = by == SplitBy::model         ? *image.model_name
+                             : by == SplitBy::material    ? *image.material_name
+                             : by == SplitBy::environment ? *image.environment_name
+                                                          : *image.view;
+  if (by != SplitBy::model) image.split = splits.of_image(label, thing);
+  image.fold = splits.fold(image.split, thing);
 }
 
 /// What stands behind model and view in an id.
@@ -182,7 +184,9 @@ void expand(const Recipe& recipe, const std::function<void(ImageSpec&&)>& visit)
                        recipe.materials_per};
   const Axis environments{k_for_environment, recipe.environments, environment_name,
                           recipe.assign_environments, recipe.environments_per};
-  Choice material_choice(recipe, materials), environment_choice(recipe, environments);
+  const Splits splits(recipe);
+  Choice material_choice(recipe, materials, splits);
+  Choice environment_choice(recipe, environments, splits);
   const std::vector<Shared<std::string>> views(recipe.view_names.begin(), recipe.view_names.end());
   std::vector<const ModelFile*> models;
   for (const ModelFile& model : recipe.models)
@@ -193,11 +197,11 @@ void expand(const Recipe& recipe, const std::function<void(ImageSpec&&)>& visit)
   image.engine = recipe.engine;
   for (const ModelFile* model : models) {
     const std::string& name = model->name;
-    const ModelLabel label = label_of(recipe, name);
+    const ModelLabel label = splits.of_model(name);
     image.model_file = model->file;
     image.model_name = name;
     image.class_path = label.class_path;
-    image.split = label.split;
+    image.split = label.split;  // kept for all images of the model, where it is theirs
     if (!recipe.hierarchies.empty()) image.other_classes = other_classes_of(recipe, name);
     material_choice.start_model(name);
     environment_choice.start_model(name);
@@ -213,6 +217,7 @@ void expand(const Recipe& recipe, const std::function<void(ImageSpec&&)>& visit)
           image.environment_name = place.name;
           image.id = name + "/" + *image.view;
           image.id += suffix(recipe, image.material_name, image.environment_name);
+          label_image(image, splits, recipe.split.by, label);
           image.engine.seed = top_53_bits(seeded_hash(recipe.seed, k_for_image, {image.id}));
           visit(ImageSpec(image));
         }

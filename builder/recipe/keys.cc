@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/recipe/keys.h"
 
+#include "manifests/check/check.h"
 #include "tracer/base/nearest.h"
 #include "tracer/scene/type_tables.h"
 
@@ -35,7 +36,7 @@ constexpr std::string_view k_reinhard = R"(outputs.tone_map = "reinhard02")";
 using enum KeyType;
 using enum Moves;
 
-/// But what cameras add.
+/// But what cameras and checks add.
 constexpr std::array k_own_keys = {
     KeySpec{"dataset.name", manifest, name, "", "(the recipe's file name less .toml)", k_any, "",
             "", "Names the dataset and its folder under out/"},
@@ -112,11 +113,25 @@ constexpr std::array k_own_keys = {
         "not name come behind, sorted, as all do without it; so a class that is added at its end "
         "changes no other's id. dsbuild classes --ids prints one"},
     KeySpec{"classes.split.test", manifest, number, "", "", between(0, 1), "", "",
-            "Share of the models to put into the test split, where nothing else says what is test. "
-            "Without it there is no split"},
-    KeySpec{"classes.split.by", manifest, choice, "", "\"model\"", k_any, "\"model\"", "",
-            "What is split: all images of a model stay together, chosen by a hash of dataset.seed "
-            "and the model's name"},
+            "Share of what split.by names to put into the test split, where nothing else says what "
+            "is test. Without it and split.held_out there is no split"},
+    KeySpec{
+        "classes.split.by", manifest, choice, "", "\"model\"", k_any,
+        R"("model" | "material" | "environment" | "view")", "",
+        "What is split: all images of a model (material, ...) stay together, chosen by a hash of "
+        "dataset.seed and its name; of two materials, environments or views or more one at least "
+        "is in each split"},
+    KeySpec{"classes.split.stratified", manifest, boolean, "", "false", k_any, "",
+            R"(classes.split.by = "model")",
+            "Each class that has two models or more has one at least in each split: where all its "
+            "hashes are on one side, the nearest goes over"},
+    KeySpec{"classes.split.held_out", manifest, text_list, "", "", k_any, "", "",
+            "Names of the models, materials, environments or views (split.by) that are the test "
+            "split, in place of a share"},
+    KeySpec{
+        "classes.split.folds", manifest, integer, "", "", between(2, 1000), "", "",
+        "Cross-validation: each image that is not of the test split gets a fold in the manifest, "
+        "from 0 to one less, by a hash of what split.by names"},
     KeySpec{"classes.missing", manifest, choice, "", "\"ignore\"", k_any, R"("ignore" | "error")",
             "", "A model that a class file lists and that has no file: count it, or fail"},
     KeySpec{"classes.unlisted", images, choice, "", "\"keep\"", k_any,
@@ -134,11 +149,11 @@ constexpr std::array k_own_keys = {
     KeySpec{"materials.files", images, path_list, "", "", k_any, "", "",
             "Material files, of any name; a material's name is its file name less the ending"},
     KeySpec{"materials.assign", images, choice, "", "\"random\"", k_any,
-            R"("random" | "cycle" | "all")", "",
-            "Which material an image shows: one by chance, one view after the other, or an image "
-            "for each"},
+            R"("random" | "cycle" | "all" | "balanced")", "",
+            "Which material an image shows: one by chance, one view after the other, an image for "
+            "each, or by chance but each equally often in each class of each split"},
     KeySpec{"materials.per", images, choice, "", "\"model\"", k_any, R"("model" | "view")",
-            R"(materials.assign = "random")",
+            R"(materials.assign = "random" | "balanced")",
             "Whether chance chooses once for all views of a model, or anew for each view"},
 
     KeySpec{"environments.dir", images, path, "", "", k_any, "", "",
@@ -147,10 +162,10 @@ constexpr std::array k_own_keys = {
     KeySpec{"environments.files", images, path_list, "", "", k_any, "", "",
             "Environment folders; an environment's name is its folder's"},
     KeySpec{"environments.assign", images, choice, "", "\"cycle\"", k_any,
-            R"("cycle" | "random" | "all")", "",
+            R"("cycle" | "random" | "all" | "balanced")", "",
             "Which environment an image shows, as materials.assign"},
     KeySpec{"environments.per", images, choice, "", "\"view\"", k_any, R"("view" | "model")",
-            R"(environments.assign = "random")", "As materials.per"},
+            R"(environments.assign = "random" | "balanced")", "As materials.per"},
 
     KeySpec{"camera.set", images, choice, "", "\"half-dodecahedron\"", k_any,
             R"("half-dodecahedron" | "list" | "orbit" | "hemisphere")", "",
@@ -310,6 +325,21 @@ CameraKeys make_camera_keys() {
   return keys;
 }
 
+/// Names and defaults of the checks' thresholds.
+struct CheckKeys {
+  std::string name, default_value;
+  const Threshold* threshold;
+};
+
+std::vector<CheckKeys> make_check_keys() {
+  std::vector<CheckKeys> keys;
+  for (const Check& check : checks())
+    for (const Threshold& threshold : check.thresholds)
+      keys.push_back({fmt::format("check.{}", threshold.name),
+                      fmt::format("{}", threshold.standard), &threshold});
+  return keys;
+}
+
 std::vector<KeySpec> make_keys() {
   static const CameraKeys cameras = make_camera_keys();
   std::vector<KeySpec> keys;
@@ -329,6 +359,10 @@ std::vector<KeySpec> make_keys() {
                       host.default_value, host.range, "", span.only_with, host.help});
     }
   }
+  static const std::vector<CheckKeys> of_checks = make_check_keys();
+  for (const CheckKeys& key : of_checks)
+    keys.push_back({key.name, manifest, number, "", key.default_value, key.threshold->range, "", "",
+                    key.threshold->help});
   return keys;
 }
 

@@ -7,6 +7,7 @@
 #include "builder/recipe/classes.h"
 #include "builder/recipe/planes.h"
 #include "builder/recipe/settings.h"
+#include "builder/recipe/splits.h"
 #include "tracer/base/files.h"
 #include "tracer/base/nearest.h"
 #include "tracer/scene/mesh_formats.h"
@@ -94,10 +95,10 @@ void check_stem_names(const Settings& settings, std::string_view key,
 
 void read_assignments(Settings& settings, Recipe& recipe) {
   recipe.assign_materials =
-      chosen<Assign, 3>(settings, "materials.assign", {"random", "cycle", "all"});
+      chosen<Assign, 4>(settings, "materials.assign", {"random", "cycle", "all", "balanced"});
   recipe.materials_per = chosen<ChoosePer, 2>(settings, "materials.per", {"model", "view"});
   recipe.assign_environments =
-      chosen<Assign, 3>(settings, "environments.assign", {"random", "cycle", "all"});
+      chosen<Assign, 4>(settings, "environments.assign", {"random", "cycle", "all", "balanced"});
   recipe.environments_per = chosen<ChoosePer, 2>(settings, "environments.per", {"model", "view"});
   if (recipe.assign_materials == Assign::all) {
     check_stem_names(settings, "materials.assign", recipe.materials, material_name);
@@ -190,6 +191,7 @@ Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrid
   recipe.cameras = std::move(views.cameras);
   recipe.view_names = std::move(views.names);
   recipe.camera_fit = views.fit;
+  read_split(settings, recipe);
   recipe.engine = read_engine(settings);
   recipe.outputs = read_outputs(settings);
   recipe.rejected_limit = settings.number("engine.rejected_limit");

@@ -22,7 +22,7 @@
 
 namespace ds {
 
-enum class Assign { random, cycle, all };
+enum class Assign { random, cycle, all, balanced };
 /// Whether a random choice is made once for a model, or for each of its views.
 enum class ChoosePer { model, view };
 
@@ -58,6 +58,18 @@ struct ClassCoverage {
   std::vector<std::string> ambiguous_examples;  ///< "mug (mug.off, mug.ply)", the first few
   /// The recipe itself says that they may be, with classes.missing, .unlisted and .unshared.
   bool missing_allowed = false, unlisted_allowed = false, unshared_allowed = false;
+};
+
+/// What is of one split, whole.
+enum class SplitBy { model, material, environment, view };
+
+/// classes.split.
+struct SplitSettings {
+  SplitBy by = SplitBy::model;
+  std::optional<double> test;      ///< share of what `by` names
+  std::set<std::string> held_out;  ///< or those that are test, by name
+  bool stratified = false;         ///< a class's models are in both splits where it has two
+  int folds = 0;                   ///< 0: none
 };
 
 /// A classification beside the one that images are labelled with: "coarse1" of the benchmark.
@@ -97,8 +109,7 @@ struct Recipe {
   std::vector<Hierarchy> hierarchies;              ///< of classes.more, by name
   std::vector<std::string> class_ids;              ///< of classes.ids: a class's id is its index
   std::vector<std::filesystem::path> class_files;  ///< all that were read
-  /// Where there are no class files and a split is wanted.
-  std::optional<double> split_test_fraction;
+  SplitSettings split;                             ///< what no class file says of it
   Assign assign_materials = Assign::random;
   ChoosePer materials_per = ChoosePer::model;
   Assign assign_environments = Assign::cycle;
@@ -135,9 +146,10 @@ struct ImageSpec {
   Shared<std::string> environment_name;  ///< folder name
   Shared<std::string> view;
   Camera camera;
-  EngineSettings engine;           ///< with this image's own seed, below 2^53
-  Shared<std::string> class_path;  ///< "vehicle/car", "" where unclassified
-  Shared<std::string> split;       ///< "train", "test" or "" where there is none
+  EngineSettings engine;              ///< with this image's own seed, below 2^53
+  Shared<std::string> class_path;     ///< "vehicle/car", "" where unclassified
+  Shared<std::string> split;          ///< "train", "test" or "" where there is none
+  std::optional<std::uint64_t> fold;  ///< below SplitSettings::folds; none in the test split
   Shared<std::map<std::string, std::string>> other_classes;  ///< class path by Recipe::hierarchies
 };
 
@@ -145,7 +157,9 @@ struct ImageSpec {
 /// environment. Seeds, splits and random choices hash (recipe seed, model name, view), never an
 /// index, so adding a model changes no image of another. A random choice takes the candidate of the
 /// highest hash, so adding a material changes only the images that then show it. "cycle": view k
-/// gets candidate (k + hash(seed, model)) mod n, so all appear equally often.
+/// gets candidate (k + hash(seed, model)) mod n, so all appear equally often. "balanced": as
+/// choose_balanced says, for each class of each split (of classes alone, where it is no model that is split);
+/// a model added changes some of its class and split.
 ///
 /// The id is model/view, and -material and -environment behind it for each that is assigned "all".
 /// Throws Error(recipe) where two images would have one id, or an id's last part a dot.

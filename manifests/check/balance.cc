@@ -11,7 +11,11 @@ namespace ds {
 namespace {
 
 /// As Datumaro's validator has it.
-constexpr double k_most_imbalance = 50;
+constexpr Threshold k_balance_ratio{
+    "balance_ratio",
+    50,
+    {.least = 1},
+    "How many times as many images as the smallest the largest class may have"};
 
 void check_balance(const CheckInput& input, CheckReport& report) {
   if (input.images.empty()) {
@@ -41,7 +45,7 @@ void check_balance(const CheckInput& input, CheckReport& report) {
   const auto less = [&](const auto& a, const auto& b) { return size(a) < size(b); };
   const auto [least, most] = std::minmax_element(counts.begin(), counts.end(), less);
   const double ratio = static_cast<double>(size(*most)) / static_cast<double>(size(*least));
-  if (ratio > k_most_imbalance)
+  if (ratio > input.threshold(k_balance_ratio))
     report.say(CheckLevel::warning,
                fmt::format(
                    "{} has {} images and {} has {}, {:.0f} times as many: a classifier that always "
@@ -70,8 +74,10 @@ void check_balance(const CheckInput& input, CheckReport& report) {
 }  // namespace
 
 Check balance_check() {
-  return {"balance", "classes of one split, of one model, or far larger than others",
-          check_balance};
+  return {"balance",
+          "classes of one split, of one model, or far larger than others",
+          check_balance,
+          {k_balance_ratio}};
 }
 
 }  // namespace ds

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <iterator>
 
 namespace ds {
@@ -25,6 +26,24 @@ std::string_view name_of(CheckLevel level) {
       return "error";
   }
   assertion_failed("a CheckLevel", __FILE__, __LINE__);
+}
+
+std::string CheckInput::setting(std::string_view key) const {
+  const std::string line = fmt::format("{} = ", key);
+  const std::string& text = dataset.recipe_text;
+  const std::size_t at = text.starts_with(line) ? 0 : text.find("\n" + line);
+  if (at == text.npos) return "";
+  const std::size_t from = at + line.size() + (at == 0 && text.starts_with(line) ? 0 : 1);
+  return text.substr(from, text.find('\n', from) - from);
+}
+
+double CheckInput::threshold(const Threshold& threshold) const {
+  const std::string text = setting(fmt::format("check.{}", threshold.name));
+  double value = threshold.standard;
+  const char* const end = text.data() + text.size();
+  if (std::from_chars(text.data(), end, value).ptr != end || !threshold.range.contains(value))
+    return threshold.standard;
+  return value;
 }
 
 void CheckReport::add(CheckLevel level, std::string what, const std::vector<std::string>& found,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "manifests/manifest.h"
+#include "tracer/base/number_range.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -37,10 +38,23 @@ inline constexpr std::size_t k_check_examples = 3;
 /// An object of all but the images.
 nlohmann::json to_json_value(const CheckFinding& finding);
 
+/// A number of a check that a recipe may set: the key check.NAME.
+struct Threshold {
+  std::string_view name;  ///< begins with the check's
+  double standard;        ///< without such a key
+  NumberRange range;
+  std::string_view help;  ///< as those of recipe keys
+};
+
 /// A dataset as its manifest tells it; all that is checked is known from there.
 struct CheckInput {
   DatasetRecord dataset;
   std::vector<ImageRecord> images;  ///< ordered by id
+
+  /// As the recipe in the manifest sets it.
+  double threshold(const Threshold& threshold) const;
+  /// "random" of "materials.assign = random"; "" where the recipe in the manifest has no such key.
+  std::string setting(std::string_view key) const;
 };
 
 /// Collects what one check finds.
@@ -68,6 +82,7 @@ struct Check {
   const char* name;
   const char* help;  ///< one line
   void (*run)(const CheckInput& input, CheckReport& report);
+  std::vector<Threshold> thresholds{};
 };
 
 /// In alphabetical order.

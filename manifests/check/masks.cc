@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Masks that show nothing, next to nothing or nothing else, and models that are hidden.
 #include "manifests/check/check.h"
+#include "tracer/base/error.h"
 
 namespace ds {
 namespace {
 
-constexpr double k_least_share = 0.005, k_most_share = 0.9, k_least_visible = 0.5;
+constexpr NumberRange k_share{.least = 0, .most = 1};
+constexpr Threshold k_masks_least{"masks_least", 0.005, k_share,
+                                  "Share of the picture on which a model must be seen"};
+constexpr Threshold k_masks_most{"masks_most", 0.9, k_share,
+                                 "Share of the picture on which a model may be seen"};
+constexpr Threshold k_masks_visible{"masks_visible", 0.5, k_share,
+                                    "visible_fraction that a model must have"};
 
 /// Of the picture's pixels; nothing without a mask.
 std::optional<double> share_of(const ImageRecord& image) {
@@ -34,25 +41,33 @@ void check_masks(const CheckInput& input, CheckReport& report) {
       return share && is(*share);
     });
   };
+  const double least = input.threshold(k_masks_least), most = input.threshold(k_masks_most),
+               visible = input.threshold(k_masks_visible);
   report.add(CheckLevel::error, "images show nothing of their model",
              where([](double share) { return share == 0; }), masks.size());
-  report.add(CheckLevel::warning, "images show their model on under 0.5 % of the picture",
-             where([](double share) { return share > 0 && share < k_least_share; }), masks.size(),
+  report.add(CheckLevel::warning,
+             fmt::format("images show their model on under {:g} % of the picture", 100 * least),
+             where([&](double share) { return share > 0 && share < least; }), masks.size(),
              "camera.distance_m = \"fit\"");
-  report.add(CheckLevel::warning, "images show nearly nothing but their model, on over 90 %",
-             where([](double share) { return share > k_most_share; }), masks.size(),
+  report.add(CheckLevel::warning,
+             fmt::format("images show nearly nothing but their model, on over {:g} %", 100 * most),
+             where([&](double share) { return share > most; }), masks.size(),
              "camera.distance_m = \"fit\"");
-  report.add(
-      CheckLevel::note, "images show under half of what would be seen of their model alone",
-      ids_where(input.images,
-                [](const ImageRecord& i) { return visible_of(i).value_or(1) < k_least_visible; }),
-      masks.size());
+  report.add(CheckLevel::note,
+             fmt::format("images show under {:g} % of what would be seen of their model alone",
+                         100 * visible),
+             ids_where(input.images,
+                       [&](const ImageRecord& i) { return visible_of(i).value_or(1) < visible; }),
+             masks.size());
 }
 
 }  // namespace
 
 Check masks_check() {
-  return {"masks", "models that are not seen, hardly seen or hidden", check_masks};
+  return {"masks",
+          "models that are not seen, hardly seen or hidden",
+          check_masks,
+          {k_masks_least, k_masks_most, k_masks_visible}};
 }
 
 }  // namespace ds

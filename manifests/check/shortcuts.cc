@@ -16,7 +16,13 @@ namespace {
 using Field = std::string ImageRecord::*;
 
 constexpr int k_deals = 1999;
-constexpr double k_least_p = 0.001, k_least_bits = 0.1;
+constexpr Threshold k_shortcuts_p{"shortcuts_p",
+                                  0.001,
+                                  {.least = 0, .most = 1},
+                                  "Chance below which it is no chance that material, environment "
+                                  "or view tell the class or split"};
+constexpr Threshold k_shortcuts_bits{
+    "shortcuts_bits", 0.1, {.least = 0}, "Bits that they may tell of it beyond what chance gives"};
 
 /// Class and value of each model or image, by numbers.
 struct Units {
@@ -28,7 +34,8 @@ std::uint32_t number_of(std::map<std::string, std::uint32_t>& numbers, const std
   return numbers.try_emplace(name, static_cast<std::uint32_t>(numbers.size())).first->second;
 }
 
-Units units_of(const CheckInput& input, Field field) {
+/// `target` is what the field may tell: the class, or the split.
+Units units_of(const CheckInput& input, Field field, Field target) {
   std::map<std::string, std::optional<std::string>> of_model;  // nothing where a model has several
   for (const ImageRecord& image : input.images) {
     const auto [at, is_new] = of_model.try_emplace(image.model, image.*field);
@@ -42,8 +49,8 @@ Units units_of(const CheckInput& input, Field field) {
   for (const ImageRecord& image : input.images) {
     const bool again = by_model && last_model != nullptr && *last_model == image.model;
     last_model = &image.model;
-    if (again || image.class_path.empty()) continue;
-    units.classes.push_back(number_of(classes, image.class_path));
+    if (again || (image.*target).empty()) continue;
+    units.classes.push_back(number_of(classes, image.*target));
     units.values.push_back(number_of(values, image.*field));
   }
   units.class_count = static_cast<std::uint32_t>(classes.size());
@@ -81,9 +88,18 @@ void deal(std::vector<std::uint32_t>& values, int number) {
   }
 }
 
-void check_field(const CheckInput& input, CheckReport& report, const char* name, Field field,
-                 const char* advice) {
-  const Units units = units_of(input, field);
+/// A field, and what it may tell.
+struct Question {
+  const char* name;
+  Field field;
+  const char* target_name;
+  Field target;
+  const char* danger;
+  const char* advice;
+};
+
+void check_field(const CheckInput& input, CheckReport& report, const Question& question) {
+  const Units units = units_of(input, question.field, question.target);
   if (units.class_count < 2 || units.value_count < 2) return;
   const double bits = mutual_information(units, units.values);
   int as_many = 0;
@@ -96,27 +112,43 @@ void check_field(const CheckInput& input, CheckReport& report, const char* name,
     as_many += dealt >= bits * (1 - 1e-12) ? 1 : 0;
   }
   const double p = (1.0 + as_many) / (1.0 + k_deals);
-  if (p >= k_least_p || bits - by_chance <= k_least_bits) return;
-  report.say(
-      CheckLevel::warning,
-      fmt::format(
-          "the {} tells {:.2f} bits of the class, {:.2f} by chance (p = {:.4f}): a classifier "
-          "may learn it in place of the model",
-          name, bits, by_chance, p),
-      advice);
+  if (p >= input.threshold(k_shortcuts_p) || bits - by_chance <= input.threshold(k_shortcuts_bits))
+    return;
+  report.say(CheckLevel::warning,
+             fmt::format("the {} tells {:.2f} bits of the {}, {:.2f} by chance (p = {:.4f}): {}",
+                         question.name, bits, question.target_name, by_chance, p, question.danger),
+             question.advice);
 }
 
 void check_shortcuts(const CheckInput& input, CheckReport& report) {
-  check_field(input, report, "material", &ImageRecord::material, "materials.assign = \"all\"");
-  check_field(input, report, "environment", &ImageRecord::environment,
-              "environments.assign = \"all\"");
-  check_field(input, report, "view", &ImageRecord::view, "");
+  struct Asked {
+    const char* name;
+    Field field;
+    const char* advice;
+  };
+  for (const auto& [name, field, advice] :
+       {Asked{"material", &ImageRecord::material, "materials.assign = \"all\" or \"balanced\""},
+        Asked{"environment", &ImageRecord::environment,
+              "environments.assign = \"all\" or \"balanced\""},
+        Asked{"view", &ImageRecord::view, ""}}) {
+    check_field(input, report,
+                {name, field, "class", &ImageRecord::class_path,
+                 "a classifier may learn it in place of the model", advice});
+    // What is held out is meant to tell the split.
+    if (input.setting("classes.split.by") != fmt::format("\"{}\"", name))
+      check_field(
+          input, report,
+          {name, field, "split", &ImageRecord::split, "what is tested was hardly seen", advice});
+  }
 }
 
 }  // namespace
 
 Check shortcuts_check() {
-  return {"shortcuts", "what tells the class beside the model", check_shortcuts};
+  return {"shortcuts",
+          "what beside the model tells the class, or the split",
+          check_shortcuts,
+          {k_shortcuts_p, k_shortcuts_bits}};
 }
 
 }  // namespace ds

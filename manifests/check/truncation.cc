@@ -8,7 +8,8 @@
 namespace ds {
 namespace {
 
-constexpr double k_most_cut = 0.5;
+constexpr Threshold k_truncation_most{
+    "truncation_most", 0.5, {.least = 0, .most = 1}, "truncation that a model may have"};
 
 /// The share that is outside; nothing where it is not known. What is beside the camera has no end.
 std::optional<double> cut_of(const ImageRecord& image) {
@@ -21,18 +22,18 @@ std::optional<double> cut_of(const ImageRecord& image) {
 }
 
 void check_truncation(const CheckInput& input, CheckReport& report) {
+  const double most = input.threshold(k_truncation_most);
   const auto known =
       ids_where(input.images, [](const ImageRecord& i) { return cut_of(i).has_value(); });
-  report.add(CheckLevel::warning,
-             fmt::format("images cut off over {:g} % of their model", 100 * k_most_cut),
-             ids_where(input.images,
-                       [](const ImageRecord& i) { return cut_of(i).value_or(0) > k_most_cut; }),
-             known.size(), "camera.distance_m = \"fit\"");
+  report.add(
+      CheckLevel::warning, fmt::format("images cut off over {:g} % of their model", 100 * most),
+      ids_where(input.images, [&](const ImageRecord& i) { return cut_of(i).value_or(0) > most; }),
+      known.size(), "camera.distance_m = \"fit\"");
   report.add(CheckLevel::note, "images cut some of their model off",
              ids_where(input.images,
-                       [](const ImageRecord& i) {
+                       [&](const ImageRecord& i) {
                          const double cut = cut_of(i).value_or(0);
-                         return cut > 0 && cut <= k_most_cut;
+                         return cut > 0 && cut <= most;
                        }),
              known.size(), "camera.distance_m = \"fit\"");
 }
@@ -40,7 +41,7 @@ void check_truncation(const CheckInput& input, CheckReport& report) {
 }  // namespace
 
 Check truncation_check() {
-  return {"truncation", "models that the frame cuts off", check_truncation};
+  return {"truncation", "models that the frame cuts off", check_truncation, {k_truncation_most}};
 }
 
 }  // namespace ds

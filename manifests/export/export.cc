@@ -24,20 +24,21 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* k_images = "manifest/images.jsonl";
-constexpr std::array<std::string_view, 5> k_filter_keys{"class", "model", "material", "environment",
-                                                        "view"};
+constexpr std::array<std::string_view, 6> k_filter_keys{"class",       "model", "material",
+                                                        "environment", "view",  "fold"};
 
-std::string_view value_of(const ImageRecord& image, std::string_view key) {
+std::string value_of(const ImageRecord& image, std::string_view key) {
   if (key == "class") return image.class_path;
   if (key == "model") return image.model;
   if (key == "material") return image.material;
   if (key == "environment") return image.environment;
-  return image.view;
+  if (key == "view") return image.view;
+  return image.fold ? std::to_string(*image.fold) : "";
 }
 
 /// The class itself or one above it, the model with or without its ending.
 bool matches_value(const ImageRecord& image, std::string_view key, std::string_view pattern) {
-  const std::string_view value = value_of(image, key);
+  const std::string value = value_of(image, key);
   if (matches_pattern(value, pattern)) return true;
   if (key == "model") return matches_pattern(value.substr(0, value.rfind('.')), pattern);
   if (key != "class") return false;
@@ -374,7 +375,7 @@ ExportResult Export::run(const std::function<void(std::uint64_t, std::uint64_t)>
     progress(++done, result_.images);
   });
   exporter->finish();
-  write_card(input_, *type_, to);
+  write_card(input_, *type_, exporter->card_lines(), to);
   to.commit(record(to));
   result_.files = to.files();
   result_.bytes = to.bytes();

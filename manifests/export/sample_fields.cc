@@ -16,6 +16,10 @@ nlohmann::json rows_of(const std::array<double, N>& values, std::size_t columns)
 
 }  // namespace
 
+bool has_folds(const DatasetRecord& dataset) {
+  return dataset.recipe_text.find("\nclasses.split.folds = ") != std::string::npos;
+}
+
 nlohmann::json sample_fields(const ExportInput& input, const ExportImage& image) {
   const ImageRecord& record = image.record;
   nlohmann::json fields{{"id", record.id},
@@ -35,6 +39,8 @@ nlohmann::json sample_fields(const ExportInput& input, const ExportImage& image)
                         {"metres_per_pixel", nullptr},
                         {"camera_to_world", rows_of(record.camera_to_world, 4)},
                         {"relative_error", nullptr}};
+  if (has_folds(input.dataset))
+    fields["fold"] = record.fold ? static_cast<std::int64_t>(*record.fold) : std::int64_t{-1};
   if (record.intrinsics) fields["intrinsics"] = rows_of(*record.intrinsics, 3);
   if (record.metres_per_pixel) fields["metres_per_pixel"] = *record.metres_per_pixel;
   if (record.relative_error) fields["relative_error"] = *record.relative_error;

@@ -7,6 +7,9 @@
 
 namespace ds {
 
+/// Whether the recipe makes folds: samples then have a "fold", -1 where the image has none.
+bool has_folds(const DatasetRecord& dataset);
+
 /// What formats with a line of JSON for each image tell of it, the same fields of the same types for
 /// every image: id, split, label (null without a class), class_path, model, material, environment,
 /// view, seed, spp, width, height, camera_model, intrinsics (null where rays are parallel),

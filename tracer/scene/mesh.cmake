@@ -10,5 +10,5 @@ set_source_files_properties(mesh_formats.cc PROPERTIES COMPILE_DEFINITIONS "DS_M
 
 ds_library(ds_mesh
   SOURCES mesh_corners.cc mesh_formats.cc mesh_hash.cc mesh_inside.cc mesh_mend.cc mesh_normalise.cc mesh_normals.cc mesh_outward.cc
-    mesh_read.cc mesh_text.cc mesh_topology.cc mesh_triangulate.cc ply_header.cc ply_layout.cc ${mesh_readers}
+    mesh_read.cc mesh_shape.cc mesh_text.cc mesh_topology.cc mesh_triangulate.cc ply_header.cc ply_layout.cc ${mesh_readers}
   LIBS ds_base)

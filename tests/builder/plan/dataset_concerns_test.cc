@@ -65,7 +65,7 @@ TEST(DatasetConcernsTest, a_class_has_the_images_of_those_below_it) {
 TEST(DatasetConcernsTest, what_is_to_come_is_not_missed) {
   Recipe recipe;
   recipe.class_paths = {"animal", "vehicle", "vehicle/car"};
-  recipe.split_test_fraction = 0.05;
+  recipe.split.test = 0.05;
   std::vector<ImageFacts> images{image("a", {})}, pending{image("b", {1, 0, 0, 0})};
   images[0].class_path = "animal";
   images[0].split = "train";
@@ -85,9 +85,9 @@ TEST(DatasetConcernsTest, a_split_that_is_asked_for_has_images) {
     return concern(concerns, "splits_empty");
   };
   EXPECT_EQ(splits(), (Concern{"splits_empty", 0, 0, {}}));
-  recipe.split_test_fraction = 0.05;
+  recipe.split.test = 0.05;
   EXPECT_EQ(splits(), (Concern{"splits_empty", 1, 2, {"test"}}));
-  recipe.split_test_fraction.reset();
+  recipe.split.test.reset();
   recipe.train_classes = "train.cla";
   EXPECT_EQ(splits(), (Concern{"splits_empty", 0, 1, {}}));
 }

@@ -102,7 +102,7 @@ class Moving : public TinyDataset {
 
 /// Keys of one value only.
 std::vector<std::string_view> fixed_keys() {
-  std::vector<std::string_view> fixed = {"classes.split.by"};
+  std::vector<std::string_view> fixed;
   if (camera_types().size() == 1) fixed.push_back("camera.type");
   return fixed;
 }
@@ -152,6 +152,13 @@ std::vector<Flip> Moving::flips() const {
       {"classes.more", "[]", paths("all.cla")},
       {"classes.ids", "\"\"", path("ids.txt"), {"classes.from=" + path("all.cla")}},
       {"classes.split.test", "0.1", "0.9"},
+      {"classes.split.by", "\"model\"", "\"view\"", {"classes.split.test=0.5"}},
+      {"classes.split.stratified",
+       "false",
+       "true",
+       {"classes.split.test=0.5", "classes.from=" + path("all.cla")}},
+      {"classes.split.held_out", "[\"box.off\"]", "[\"tetra.ply\"]"},
+      {"classes.split.folds", "2", "5"},
       {"classes.missing", "\"ignore\"", "\"error\"", {"classes.train=" + path("all.cla")}},
       {"classes.unlisted", "\"keep\"", "\"skip\"", {"classes.train=" + path("box.cla")}},
       {"classes.unshared", "\"keep\"", "\"error\"", {"classes.train=" + path("box.cla")}},
@@ -207,6 +214,10 @@ std::vector<Flip> Moving::flips() const {
       {"outputs.keep_film", "true", "false"},
   };
   flips.insert(flips.end(), others.begin(), others.end());
+  for (const KeySpec& key : recipe_keys())
+    if (key.name.starts_with("check."))
+      flips.push_back(
+          {key.name, std::string(key.default_value), key.range.contains(0.6) ? "0.6" : "2"});
   return flips;
 }
 

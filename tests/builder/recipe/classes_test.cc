@@ -127,7 +127,8 @@ TEST_F(RecipeClassesTest, ExcludeASplitByHash) {
             "classes.test");
   EXPECT_EQ(folder_.findings("classes.split = { test = 1.5, by = \"class\" }"),
             "r.toml:4:26: classes.split.test must be a number in [0, 1], got 1.5\n"
-            "r.toml:4:36: classes.split.by must be \"model\", got \"class\"");
+            "r.toml:4:36: classes.split.by must be \"model\" or \"material\" or \"environment\" or "
+            "\"view\", got \"class\"");
 }
 
 TEST_F(RecipeClassesTest, ComeFromFolders) {

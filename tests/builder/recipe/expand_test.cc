@@ -87,7 +87,7 @@ TEST(Expand, AddingAModelChangesNoOtherImage) {
       Recipe before = small_recipe(30, 5);
       before.assign_materials = materials;
       before.assign_environments = environments;
-      before.split_test_fraction = 0.5;
+      before.split.test = 0.5;
       Recipe after = before;
       after.models.insert(after.models.begin(), {"a-first.off", "/models/a-first.off"});
       after.models.push_back({"z-last.off", "/models/z-last.off"});
@@ -215,7 +215,7 @@ TEST(Expand, GivesEachImageASeedOfItsOwnBelow2To53) {
 
 TEST(Expand, SplitsModelsByTheShareAskedFor) {
   Recipe recipe = small_recipe(1000, 2);
-  recipe.split_test_fraction = 0.3;
+  recipe.split.test = 0.3;
   std::map<std::string, std::set<std::string>> splits;
   for (const ImageSpec& image : expand(recipe))
     splits[*image.model_name].insert(*image.split);
@@ -228,15 +228,15 @@ TEST(Expand, SplitsModelsByTheShareAskedFor) {
 
   // A larger share moves models one way only.
   Recipe larger = recipe;
-  larger.split_test_fraction = 0.5;
+  larger.split.test = 0.5;
   for (const ImageSpec& image : expand(larger)) {
     if (splits[*image.model_name].contains("test")) {
       EXPECT_EQ(image.split, "test");
     }
   }
-  recipe.split_test_fraction = 0;
+  recipe.split.test = 0;
   EXPECT_EQ(expand(recipe)[0].split, "train");
-  recipe.split_test_fraction = 1;
+  recipe.split.test = 1;
   EXPECT_EQ(expand(recipe)[0].split, "test");
 }
 
@@ -244,7 +244,7 @@ TEST(Expand, SplitsModelsByTheShareAskedFor) {
 // user.
 TEST(Expand, KeepsTheChoicesOfFormerVersions) {
   Recipe recipe = small_recipe(2, 2);
-  recipe.split_test_fraction = 0.5;
+  recipe.split.test = 0.5;
   std::vector<std::string> images;
   for (const ImageSpec& image : expand(recipe))
     images.push_back(describe(image));

@@ -153,7 +153,7 @@ TEST_F(RecipeReadTest, ReportsAllFindingsWithTheirPlacesInTheirOrder) {
       "r.toml:13:32: materials.files must be a list of paths (strings), got 3\n"
       "r.toml:17:2: lights is no section of a recipe; there are dataset, models, classes, "
       "materials, "
-      "environments, camera, engine, outputs\n"
+      "environments, camera, engine, outputs, check\n"
       "r.toml:19:9: outputs.depth must be \"exr\" or false, got true\n"
       "r.toml:10:7: models.dir must be a folder, found nowhere: No such file or directory\n"
       "r.toml:16:3: environments.files must name a folder that holds an environment.scn, found "

@@ -187,6 +187,81 @@ TEST(Checks, ModelsCutOff) {
       ElementsAre("warning: 2/3 images cut off over 50 % of their model: car0.ply/1,car1.ply/0"));
 }
 
+TEST(Checks, ModelsAreInBothSplitsWhereViewsAreSplit) {
+  CheckInput input = clean();
+  for (ImageRecord& image : input.images)
+    image.split = image.view == "0" ? "train" : "test";
+  EXPECT_THAT(found(input, "leaks"),
+              ElementsAre(HasSubstr("models are the same mesh in two splits")));
+  input.dataset.recipe_text = "classes.split.by = \"view\"\n";
+  EXPECT_THAT(found(input, "leaks"), IsEmpty());
+  EXPECT_EQ(run_checks(input, {"leaks"}).front().what,
+            "24 of 24 models are in more than one split");
+}
+
+TEST(Checks, CopiesOfOneShapeInTwoSplits) {
+  CheckInput input = clean();
+  const std::string shape = std::string(72, '1');
+  input.dataset.shapes = {{"car0.ply", shape + "1000"},
+                          {"car1.ply", shape + "1100"},  // in the same split
+                          {"car3.ply", shape + "112c"},  // 0.03 from the first
+                          {"car4.ply", shape + "122d"},  // and 0.0557
+                          {"ship5.ply", "2" + shape + "000"}};
+  EXPECT_THAT(
+      found(input, "leaks"),
+      ElementsAre("warning: 2/5 pairs of models in two splits have nearly one shape, as turned, "
+                  "scaled or remeshed copies have: car0.ply (train), car3.ply (test),car1.ply "
+                  "(train), car3.ply (test)"));
+  input.dataset.recipe_text = "a.b = 1\ncheck.leaks_near_shape = 0.01\n";
+  EXPECT_THAT(found(input, "leaks"), ElementsAre(HasSubstr("warning: 1/5")));
+  input.dataset.recipe_text = "check.leaks_near_shape = 0\n";
+  EXPECT_THAT(found(input, "leaks"), IsEmpty());
+}
+
+TEST(Checks, ThresholdsAreTheRecipes) {
+  CheckInput input = clean();
+  const auto with = [&](const char* check, const char* line) {
+    input.dataset.recipe_text = std::string("dataset.seed = 1\n") + line + "\n";
+    return found(input, check);
+  };
+  EXPECT_THAT(with("masks", "check.masks_most = 0.39"),
+              ElementsAre(HasSubstr("48/48 images show nearly")));
+  EXPECT_THAT(with("masks", "check.masks_least = 0.41"), ElementsAre(HasSubstr("under 41 %")));
+  EXPECT_THAT(
+      with("errors", "check.errors_most = 0.019"),
+      ElementsAre("warning: 48/48 pictures may have an error above 0.019: car0.ply/0,car0.ply/1,"
+                  "car1.ply/0"));
+  EXPECT_THAT(with("errors", "check.errors_most = 0.021"), IsEmpty());
+  EXPECT_THAT(with("exposure", "check.exposure_white = 0"), IsEmpty());
+  EXPECT_THAT(with("exposure", "check.exposure_lit = 1"), IsEmpty()) << "all are lit";
+  EXPECT_THAT(with("masks", "check.masks_most = rubbish"), IsEmpty());
+  for (const Check& check : checks())
+    for (const Threshold& threshold : check.thresholds) {
+      EXPECT_TRUE(threshold.name.starts_with(std::string(check.name) + "_")) << threshold.name;
+      EXPECT_TRUE(threshold.range.contains(threshold.standard)) << threshold.name;
+    }
+}
+
+TEST(Checks, AssetsThatNoImageShows) {
+  CheckInput input = clean();
+  input.dataset.recipe_text =
+      "models.files = [\"car0.ply\", \"boat.ply\"]\nmaterials.files = [\"m0.mat\", "
+      "\"m9.mat\"]\nenvironments.files = [\"e0\"]\n";
+  EXPECT_THAT(found(input, "unused"),
+              ElementsAre("warning: 1/2 models of the recipe are in no image: boat.ply"));
+  EXPECT_EQ(run_checks(input, {"unused"}).size(), 2U) << "and a note of the material";
+}
+
+TEST(Checks, WhatTellsTheSplit) {
+  CheckInput input = clean();
+  for (ImageRecord& image : input.images)
+    image.environment = image.split == "train" ? "studio" : "garden";
+  EXPECT_THAT(found(input, "shortcuts"),
+              ElementsAre(HasSubstr("the environment tells 1.00 bits of the split, ")));
+  input.dataset.recipe_text = "classes.split.by = \"environment\"\n";
+  EXPECT_THAT(found(input, "shortcuts"), IsEmpty()) << "it is meant";
+}
+
 TEST(Checks, NoiseAndLostSamples) {
   CheckInput input = clean();
   image_of(input, "car0.ply/0").relative_error = 0.061;

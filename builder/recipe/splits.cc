@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/recipe/splits.h"
+
+#include "builder/recipe/seeded_hash.h"
+#include "tracer/base/nearest.h"
+
+#include <algorithm>
+#include <initializer_list>
+#include <set>
+#include <string_view>
+#include <vector>
+
+namespace ds {
+namespace {
+
+constexpr std::string_view k_for_split = "split";
+constexpr std::string_view k_for_fold = "fold";
+
+std::string_view name_of(SplitBy by) {
+  switch (by) {
+    case SplitBy::model:
+      return "model";
+    case SplitBy::material:
+      return "material";
+    case SplitBy::environment:
+      return "environment";
+    case SplitBy::view:
+      return "view";
+  }
+  assertion_failed("a SplitBy", __FILE__, __LINE__);
+}
+
+/// The names of all that is split.
+std::set<std::string> things_of(const Recipe& recipe) {
+  std::set<std::string> names;
+  switch (recipe.split.by) {
+    case SplitBy::model:
+      for (const ModelFile& model : recipe.models)
+        names.insert(model.name);
+      break;
+    case SplitBy::material:
+      for (const auto& file : recipe.materials)
+        names.insert(material_name(file));
+      break;
+    case SplitBy::environment:
+      for (const auto& folder : recipe.environments)
+        names.insert(environment_name(folder));
+      break;
+    case SplitBy::view:
+      names.insert(recipe.view_names.begin(), recipe.view_names.end());
+      break;
+  }
+  return names;
+}
+
+void read_held_out(Settings& settings, Recipe& recipe) {
+  constexpr std::string_view k_key = "classes.split.held_out";
+  const RecipeValue* list = settings.find(k_key);
+  if (list == nullptr || list->array() == nullptr) return;
+  if (settings.find("classes.split.test") != nullptr)
+    settings.complain(*list, k_key, "must not be given together with classes.split.test");
+  if (list->array()->empty())
+    settings.complain(*list, k_key, "must name something, got an empty list");
+  const std::set<std::string> known = things_of(recipe);
+  const std::vector<std::string_view> names(known.begin(), known.end());
+  for (const RecipeValue& name : *list->array()) {
+    if (!known.contains(*name.text()) && !known.empty())
+      settings.complain(
+          name, k_key,
+          fmt::format("must name one of the recipe's {}s, got {:?}{}", name_of(recipe.split.by),
+                      *name.text(), did_you_mean(*name.text(), names)));
+    recipe.split.held_out.insert(*name.text());
+  }
+}
+
+/// Keys that do nothing without others.
+void check_companions(Settings& settings, const Recipe& recipe) {
+  const auto given = [&](std::initializer_list<const char*> keys) {
+    return std::any_of(keys.begin(), keys.end(), [&](const char* key) {
+      return settings.given(key) || settings.misspelt(key);
+    });
+  };
+  if (given({"classes.split.by"}) &&
+      !given({"classes.split.test", "classes.split.held_out", "classes.split.folds"}))
+    settings.complain("classes.split.by",
+                      "has no effect without classes.split.test, classes.split.held_out or "
+                      "classes.split.folds");
+  if (!recipe.split.stratified) return;
+  if (!given({"classes.split.test"}))
+    settings.complain("classes.split.stratified", "has no effect without classes.split.test");
+  else if (recipe.labels.size() == 0 && settings.diagnostics().empty())
+    settings.complain("classes.split.stratified", "= true wants classes: classes.from names them");
+}
+
+}  // namespace
+
+void read_split(Settings& settings, Recipe& recipe) {
+  SplitSettings& split = recipe.split;
+  const std::string& by = settings.text("classes.split.by");
+  for (const SplitBy each :
+       {SplitBy::model, SplitBy::material, SplitBy::environment, SplitBy::view})
+    if (name_of(each) == by) split.by = each;
+  if (settings.find("classes.split.test") != nullptr)
+    split.test = settings.number("classes.split.test");
+  if (settings.find("classes.split.folds") != nullptr)
+    split.folds = settings.integer("classes.split.folds");
+  split.stratified = settings.boolean("classes.split.stratified");
+  read_held_out(settings, recipe);
+  const bool has_files =
+      settings.find("classes.train") != nullptr || settings.find("classes.test") != nullptr;
+  for (const char* key : {"classes.split.test", "classes.split.held_out"}) {
+    const RecipeValue* given = settings.find(key);
+    if (given == nullptr) continue;
+    if (has_files)
+      settings.complain(*given, key,
+                        "must not be given together with classes.train or classes.test");
+    else if (recipe.labels.has_splits())
+      settings.complain(*given, key,
+                        "must not be given where classes.from says what is train and test");
+  }
+  check_companions(settings, recipe);
+}
+
+/// In [0, 1).
+double Splits::place(const std::string& thing) const {
+  return unit_interval(
+      recipe_.split.by == SplitBy::model
+          ? seeded_hash(recipe_.seed, k_for_split, {thing})
+          : seeded_hash(recipe_.seed, k_for_split, {name_of(recipe_.split.by), thing}));
+}
+
+/// `both`: a group of two or more is to be in both splits.
+void Splits::enter(const std::map<std::string, double>& group, bool both) {
+  const double share = *recipe_.split.test;
+  for (const auto& [thing, at] : group)
+    is_test_[thing] = at < share;
+  if (!both || group.size() < 2 || share <= 0 || share >= 1) return;
+  const auto by_place = [](const auto& a, const auto& b) { return a.second < b.second; };
+  const auto [least, most] = std::minmax_element(group.begin(), group.end(), by_place);
+  if (least->second >= share) is_test_[least->first] = true;
+  if (most->second < share) is_test_[most->first] = false;
+}
+
+Splits::Splits(const Recipe& recipe) : recipe_(recipe) {
+  const SplitSettings& split = recipe.split;
+  const bool by_model = split.by == SplitBy::model;
+  if (!split.held_out.empty()) {
+    for (const std::string& thing : things_of(recipe))
+      is_test_[thing] = split.held_out.contains(thing);
+  } else if (split.test) {
+    std::map<std::string, std::map<std::string, double>> groups;
+    for (const std::string& thing : things_of(recipe)) {
+      std::string group;
+      if (split.stratified) group = recipe.labels.find(thing).value_or(ModelLabel{}).class_path;
+      groups[group].emplace(thing, place(thing));
+    }
+    for (const auto& [path, group] : groups)
+      enter(group, !by_model || (split.stratified && !path.empty()));
+  }
+}
+
+ModelLabel Splits::of_model(const std::string& model) const {
+  ModelLabel label = recipe_.labels.find(model).value_or(ModelLabel{});
+  if (recipe_.split.by == SplitBy::model) label.split = of_image(label, model);
+  return label;
+}
+
+std::string Splits::of_image(const ModelLabel& label, const std::string& thing) const {
+  const auto at = is_test_.find(thing);
+  if (at == is_test_.end()) return label.split;
+  return at->second ? "test" : "train";
+}
+
+std::optional<std::uint64_t> Splits::fold(const std::string& split,
+                                          const std::string& thing) const {
+  const auto folds = static_cast<std::uint64_t>(recipe_.split.folds);
+  if (folds == 0 || split == "test") return std::nullopt;
+  const double at =
+      unit_interval(seeded_hash(recipe_.seed, k_for_fold, {name_of(recipe_.split.by), thing}));
+  return std::min(static_cast<std::uint64_t>(at * static_cast<double>(folds)), folds - 1);
+}
+
+}  // namespace ds

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/recipe/recipe.h"
+#include "builder/recipe/settings.h"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace ds {
+
+/// classes.split, checked against models, materials, environments and views, which must be read.
+void read_split(Settings& settings, Recipe& recipe);
+
+/// Train or test, and the fold, of whatever classes.split.by names.
+///
+/// Each of them is of the test split where a hash of its own is below the share, so that one more moves no
+/// other. Where chance leaves a group without train or without test and it has two or more, the one whose
+/// hash is nearest to the other side goes over. A group is a class with classes.split.stratified; it is all
+/// there are of materials, environments or views, which are few; models alone are in no group.
+class Splits {
+ public:
+  /// The recipe must outlive it.
+  explicit Splits(const Recipe& recipe);
+
+  /// Split and class of a model; the split stays open ("") where it is not models that are split.
+  ModelLabel of_model(const std::string& model) const;
+  /// The split of an image of a model of that label, which shows the thing of that name that
+  /// classes.split.by names.
+  std::string of_image(const ModelLabel& label, const std::string& thing) const;
+  /// Of an image of that split; nothing without folds, and of the test split.
+  std::optional<std::uint64_t> fold(const std::string& split, const std::string& thing) const;
+
+ private:
+  double place(const std::string& thing) const;
+  void enter(const std::map<std::string, double>& group, bool both);
+
+  const Recipe& recipe_;
+  std::map<std::string, bool> is_test_;  ///< by thing
+};
+
+}  // namespace ds
