@@ -45,7 +45,7 @@ std::string licence_lines(const DatasetRecord& dataset) {
   return text;
 }
 
-std::string front_matter(const ExportInput& input) {
+std::string front_matter(const ExportInput& input, const std::string& lines) {
   std::uint64_t images = 0;
   for (const auto& [split, count] : input.splits)
     images += count;
@@ -57,7 +57,7 @@ std::string front_matter(const ExportInput& input) {
       "tags:\n- synthetic\nsize_categories:\n- {}\nannotations_creators:\n- machine-generated\n"
       "source_datasets:\n- original\n",
       size_category(images));
-  return text + "---\n";
+  return text + lines + "---\n";
 }
 
 /// "LICENSES/MIT.txt"; "LICENSES/MIT-2.txt" of another text under the same id, as with another name in
@@ -190,11 +190,12 @@ std::string body(const ExportInput& input, const ExporterType& type, const Expor
 
 }  // namespace
 
-void write_card(const ExportInput& input, const ExporterType& type, ExportFolder& to) {
+void write_card(const ExportInput& input, const ExporterType& type, const std::string& lines,
+                ExportFolder& to) {
   const std::vector<std::string> files = licence_files(input.dataset.licences);
   for (std::size_t i = 0; i < files.size(); ++i)
     to.write(files[i], input.dataset.licences[i].text);
-  to.write("README.md", front_matter(input) + "\n" + body(input, type, to));
+  to.write("README.md", front_matter(input, lines) + "\n" + body(input, type, to));
 }
 
 }  // namespace ds

@@ -7,6 +7,8 @@ namespace ds {
 
 /// Adds README.md, the data card (with the front matter of Hugging Face's hub: what, how many, under
 /// which licence), and LICENSES/, each licence's text once.
-void write_card(const ExportInput& input, const ExporterType& type, ExportFolder& to);
+/// `lines` is Exporter::card_lines.
+void write_card(const ExportInput& input, const ExporterType& type, const std::string& lines,
+                ExportFolder& to);
 
 }  // namespace ds

@@ -60,6 +60,8 @@ class Exporter {
   virtual ~Exporter() = default;
   virtual void add(const ExportImage& image) = 0;
   virtual void finish() = 0;
+  /// Lines for the front matter of the export's card, once it is finished.
+  virtual std::string card_lines() const { return ""; }
 };
 
 /// A format of `dsbuild export`: NAME.cc and its line in CMakeLists.txt.

@@ -3,6 +3,7 @@
 // and NAME_file_name the image feature NAME. Planes that are no PNG cannot be such features: they get
 // their path.
 #include "manifests/export/exporter.h"
+#include "manifests/export/hub_features.h"
 #include "manifests/export/sample_fields.h"
 #include "manifests/json_text.h"
 
@@ -22,9 +23,27 @@ class ImageFolder : public Exporter {
       const std::string path = place_of_kind(image, kind);
       to_.place(file_of(image, kind), image.split + "/" + path);
       const bool png = path.ends_with(".png");
+      if (!png) exr_kinds_.insert(kind);
+      bytes_[image.split] += file_of(image, kind).hashes.size_bytes;
       fields[kind == "image" ? "file_name" : kind + (png ? "_file_name" : "_path")] = path;
     }
     lines_.at(image.split)->write(canonical_json(fields) + "\n");
+  }
+
+  std::string card_lines() const override {
+    std::vector<ParquetFile::Column> columns;
+    for (const std::string& kind : input_.kinds)
+      columns.push_back(exr_kinds_.contains(kind)
+                            ? ParquetFile::Column{kind + "_path", ParquetType::text}
+                            : ParquetFile::Column{kind, ParquetType::image});
+    for (const char* name : {"id", "split"})
+      columns.push_back({name, ParquetType::text});
+    for (const ParquetFile::Column& column : sample_columns(input_))
+      columns.push_back(column);
+    std::map<std::string, std::string> paths;
+    for (const auto& [split, images] : input_.splits)
+      paths[split] = split + "/**";
+    return hub_lines(input_, columns, bytes_, paths, false);
   }
 
   void finish() override {
@@ -35,6 +54,8 @@ class ImageFolder : public Exporter {
  private:
   const ExportInput& input_;
   ExportFolder& to_;
+  std::set<std::string> exr_kinds_;
+  std::map<std::string, std::uint64_t> bytes_;  ///< of each split's files
   std::map<std::string, std::unique_ptr<ExportFolder::Stream>> lines_;
 };
 

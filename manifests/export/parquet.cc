@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Apache Parquet as Hugging Face's hub has it: data/SPLIT-%05d.parquet, files of up to 500 MB, pictures in
 // them. The footer tells the features, so that labels have their classes' names.
+#include "manifests/export/hub_features.h"
 #include "manifests/export/parquet_export.h"
 #include "manifests/export/sample_fields.h"
 #include "manifests/json_text.h"
@@ -9,24 +10,6 @@ namespace ds {
 namespace {
 
 constexpr std::uint64_t k_file_bytes = 400'000'000;
-
-constexpr std::pair<const char*, ParquetType> k_fields[] = {
-    {"label", ParquetType::int64},
-    {"class_path", ParquetType::text},
-    {"model", ParquetType::text},
-    {"material", ParquetType::text},
-    {"environment", ParquetType::text},
-    {"view", ParquetType::text},
-    {"seed", ParquetType::int64},
-    {"spp", ParquetType::int64},
-    {"width", ParquetType::int64},
-    {"height", ParquetType::int64},
-    {"camera_model", ParquetType::text},
-    {"intrinsics", ParquetType::float64_matrix},
-    {"metres_per_pixel", ParquetType::float64},
-    {"camera_to_world", ParquetType::float64_matrix},
-    {"relative_error", ParquetType::float64},
-};
 
 nlohmann::json feature(ParquetType type) {
   const auto value = [](const char* dtype) {
@@ -64,9 +47,8 @@ Parquet::Parquet(const ExportInput& input, ExportFolder& to) : input_(input), to
     kinds_.push_back(kind);
     columns_.push_back({kind, ParquetType::image});
   }
-  for (const auto& [name, type] : k_fields)
-    columns_.push_back({name, type});
-  if (input.has("mask")) columns_.push_back({"bbox", ParquetType::int64_list});
+  for (const ParquetFile::Column& column : sample_columns(input))
+    columns_.push_back(column);
   nlohmann::json features;
   for (const auto& [name, type] : columns_)
     features[name] = feature(type);
@@ -79,6 +61,7 @@ void Parquet::add(const ExportImage& image) {
   for (const std::string& kind : kinds_) {
     const FileRecord& file = file_of(image, kind);
     images.push_back({place_of_kind(image, kind), read_checked(input_.folder, file)});
+    bytes_[image.split] += file.hashes.size_bytes;
   }
   Split& split = splits_[image.split];
   if (split.file && split.file->bytes() > k_file_bytes) {
@@ -94,6 +77,13 @@ void Parquet::add(const ExportImage& image) {
 void Parquet::finish() {
   for (auto& [name, split] : splits_)
     split.file->close();
+}
+
+std::string Parquet::card_lines() const {
+  std::map<std::string, std::string> paths;
+  for (const auto& [split, images] : input_.splits)
+    paths[split] = fmt::format("data/{}-*.parquet", split);
+  return hub_lines(input_, columns_, bytes_, paths, true);
 }
 
 bool Parquet::is_exr(const std::string& kind) const {

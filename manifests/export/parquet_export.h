@@ -16,6 +16,7 @@ class Parquet : public Exporter {
   Parquet(const ExportInput& input, ExportFolder& to);
   void add(const ExportImage& image) override;
   void finish() override;
+  std::string card_lines() const override;
   const std::vector<ParquetFile::Column>& columns() const { return columns_; }
 
  private:
@@ -30,6 +31,7 @@ class Parquet : public Exporter {
   std::vector<std::string> kinds_;  ///< of files in it
   std::vector<ParquetFile::Column> columns_;
   std::string info_;
+  std::map<std::string, std::uint64_t> bytes_;  ///< of each split's pictures
   std::map<std::string, Split> splits_;
 };
 

@@ -12,7 +12,7 @@ import time
 import image_reader
 from harness import IMAGES, TinyCase, main
 
-FORMATS = ["coco", "croissant", "csv", "imagefolder", "nerf", "parquet", "webdataset", "yolo"]
+FORMATS = ["coco", "croissant", "csv", "imagefolder", "nerf", "parquet", "webdataset", "yolo", "yolo_seg"]
 TRAIN = "PSB 1\n2 1\nsolid 0 0\nbox solid 1\nbox\n"
 TEST = "PSB 1\n2 1\nsolid 0 0\nspike solid 1\ntetra\n"
 CLASSES = ["solid/box", "solid/spike"]
@@ -138,6 +138,24 @@ class ExportTest(TinyCase):
                                   (w * record["width"], width), (h * record["height"], height)):
                 self.assertAlmostEqual(found, wanted, 9)
         self.assertEqual(list((self.to / "images").rglob("*mask*")), [])
+
+    def test_yolo_seg(self):
+        self.export("yolo_seg")
+        for record in self.records():
+            numbers = (self.to / "labels" / f"{record['split']}/{self.key(record)}.txt").read_text().split()
+            self.assertEqual(CLASSES[int(numbers[0])], record["class_path"])
+            xs = [float(x) * record["width"] for x in numbers[1::2]]
+            ys = [float(y) * record["height"] for y in numbers[2::2]]
+            self.assertGreaterEqual(len(xs), 4)
+            self.assertEqual(self.filled(list(zip(xs, ys)), record["width"], record["height"]), self.mask(record))
+
+    @staticmethod
+    def filled(polygon, width, height):
+        """Pixels whose centre has an odd number of edges to the right of it."""
+        edges = list(zip(polygon, polygon[1:] + polygon[:1]))
+        return [[sum((a[1] > y + 0.5) != (b[1] > y + 0.5) and
+                     x + 0.5 < a[0] + (y + 0.5 - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) for a, b in edges) % 2
+                 for x in range(width)] for y in range(height)]
 
     def test_imagefolder_and_csv(self):
         self.export("imagefolder")

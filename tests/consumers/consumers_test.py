@@ -75,9 +75,23 @@ class ConsumersTest(TinyCase):
                 seen += 1
         self.assertEqual(seen, IMAGES)
 
+    def expect_card(self, format):
+        """The card tells the features and counts: a wrong count raises, and features that are not the files' do."""
+        info = DatasetCard.load(self.to / "README.md").data.to_dict()["dataset_info"]
+        self.assertEqual([(split["name"], split["num_examples"]) for split in info["splits"]],
+                         [("test", IMAGES // 2), ("train", IMAGES // 2)])
+        loaded = self.load(str(self.to))
+        for rows in loaded.values():
+            self.assertEqual({feature["name"] for feature in info["features"]}, set(rows.features))
+            if format == "parquet":
+                self.assertEqual(rows.features["label"].names, CLASSES)
+            self.assertEqual(set(rows["label"]), {0} if rows.split == "train" else {1})
+            self.assertEqual((type(rows.features["image"]), type(rows.features["mask"])), (datasets.Image, datasets.Image))
+            numpy.testing.assert_array_equal(numpy.asarray(rows[0]["image"]), self.picture(self.records[rows[0]["id"]]))
+
     def test_imagefolder(self):
         self.export("imagefolder")
-        DatasetCard.load(self.to / "README.md")
+        self.expect_card("imagefolder")
         loaded = self.load("imagefolder", data_dir=str(self.to))
         self.assertEqual({split: len(rows) for split, rows in loaded.items()},
                          {"train": IMAGES // 2, "test": IMAGES // 2})
@@ -92,6 +106,7 @@ class ConsumersTest(TinyCase):
 
     def test_parquet(self):
         self.export("parquet")
+        self.expect_card("parquet")
         table = parquet.read_table(self.to / "data/train-00000.parquet")
         self.assertEqual(table.num_rows, IMAGES // 2)
         loaded = self.load("parquet", data_files={split: str(self.to / f"data/{split}-*.parquet")

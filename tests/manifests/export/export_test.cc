@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "manifests/export/export.h"
 
+#include "manifests/export/outlines.h"
 #include "manifests/export/run_lengths.h"
 
 #include <gmock/gmock.h>
@@ -10,6 +11,38 @@ namespace ds {
 namespace {
 
 using testing::ElementsAre;
+
+/// What the polygon fills by the even-odd rule, pixel by pixel.
+std::vector<std::uint8_t> filled(const std::vector<std::array<int, 2>>& polygon, int width,
+                                 int height) {
+  std::vector<std::uint8_t> values;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      bool inside = false;
+      for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const auto [ax, ay] = polygon[i];
+        const auto [bx, by] = polygon[(i + 1) % polygon.size()];
+        const double at = y + 0.5;
+        if ((ay > at) != (by > at) && x + 0.5 < ax + (at - ay) / (by - ay) * (bx - ax))
+          inside = !inside;
+      }
+      values.push_back(inside ? 1 : 0);
+    }
+  return values;
+}
+
+TEST(Outline, FillsToTheMask) {
+  EXPECT_TRUE(outline_of({2, 2, {0, 0, 0, 0}}).empty());
+  EXPECT_THAT(outline_of({2, 1, {0, 1}}),
+              ElementsAre(std::array{1, 0}, std::array{2, 0}, std::array{2, 1}, std::array{1, 1}));
+  // Every mask of 4 x 4 pixels: holes, pieces, pieces that touch in a corner.
+  for (unsigned bits = 0; bits < 1U << 16U; bits += 3) {
+    MaskPixels mask{4, 4, {}};
+    for (unsigned i = 0; i < 16; ++i)
+      mask.values.push_back((bits >> i) & 1U);
+    ASSERT_EQ(filled(outline_of(mask), 4, 4), mask.values) << bits;
+  }
+}
 
 TEST(ExportKey, IsOneWordWithoutDots) {
   EXPECT_EQ(export_key("mug.ply/1", "mug.ply", KeyForm::stem), "mug-1");
