@@ -11,6 +11,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <stdio.h>
+#include <string_view>
 #include <system_error>
 
 namespace ds {
@@ -53,6 +54,21 @@ void check_own(const fs::path& to, const WholeFolderKind& kind) {
 }
 
 }  // namespace
+
+fs::path real_place(const fs::path& path) {
+  std::error_code error;
+  const fs::path real = fs::weakly_canonical(path, error);
+  return error ? fs::absolute(path).lexically_normal() : real;
+}
+
+void check_outside(const fs::path& to, const fs::path& dataset) {
+  const std::string inside =
+      real_place(to).lexically_relative(real_place(dataset)).generic_string();
+  for (const std::string_view own : {"images", "manifest", ".dsbuild"})
+    if (inside == own || inside.starts_with(std::string(own) + "/"))
+      fail(ErrorKind::usage, "-o {}: wanted a folder outside the dataset's own {}", to.string(),
+           own);
+}
 
 bool is_whole_folder(const fs::path& folder, const WholeFolderKind& kind) {
   std::error_code error;

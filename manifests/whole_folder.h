@@ -38,6 +38,12 @@ const WholeFolderKind* whole_folder_kind(const std::filesystem::path& folder);
 /// replaced: no such folder, or one that holds what none of these put there.
 std::filesystem::path checked_place(const std::filesystem::path& to, const WholeFolderKind& kind);
 
+/// As it is under all links, where that can be told.
+std::filesystem::path real_place(const std::filesystem::path& path);
+/// Throws Error(usage) where `to` lies in what builds, exports and verify take for theirs of a dataset's
+/// folder.
+void check_outside(const std::filesystem::path& to, const std::filesystem::path& dataset);
+
 /// A folder that is there whole or not at all. It is written beside its place, and takes it in `commit`;
 /// of a process that was killed the next one for that parent removes what it left. Paths are relative
 /// to the folder. All functions throw Error(io).

@@ -103,6 +103,8 @@ int run_diff(const Arguments& arguments) {
          arguments.target, arguments.other);
   const fs::path a = dataset_folder({arguments.target, {}, {}, {}, false}),
                  b = dataset_folder({arguments.other, {}, {}, {}, false});
+  for (const fs::path& dataset : {a, b})
+    if (!arguments.diff_folder.empty()) check_outside(arguments.diff_folder, dataset);
   Pictures pictures(arguments.diff_folder);
   const std::vector<ImageRecord> images_a = read_images_manifest(a),
                                  images_b = read_images_manifest(b);

@@ -98,7 +98,7 @@ std::string shell_quoted(std::string_view text) {
   return result + "'";
 }
 
-/// What stands before the first full stop or bracket: shells show one line.
+/// For the one line that shells show: what stands before the first semicolon or bracket.
 std::string brief(const ShellOption& option) {
   if (!option.words.empty()) return option.value;
   return option.help.substr(0, std::min(option.help.find_first_of(";["), option.help.find(" (")));

@@ -23,26 +23,13 @@ namespace fs = std::filesystem;
 constexpr const char* k_images = "manifest/images.jsonl";
 constexpr const char* k_page = "index.html";
 
-/// As it is under all links, where that can be told.
-fs::path place_of(const fs::path& path) {
-  std::error_code error;
-  const fs::path real = fs::weakly_canonical(path, error);
-  return error ? fs::absolute(path).lexically_normal() : real;
-}
-
 void check_request(const GalleryRequest& request) {
   std::error_code error;
   if (!fs::is_regular_file(request.folder / k_images, error))
     fail(ErrorKind::usage,
          "{}: wanted the folder of a dataset that dsbuild built, found no {} in it",
          request.folder.string(), k_images);
-  // What a build, an export or verify take for theirs.
-  const std::string inside =
-      place_of(request.to).lexically_relative(place_of(request.folder)).generic_string();
-  for (const std::string_view own : {"images", "manifest", ".dsbuild"})
-    if (inside == own || inside.starts_with(std::string(own) + "/"))
-      fail(ErrorKind::usage, "-o {}: wanted a folder outside the dataset's own {}",
-           request.to.string(), own);
+  check_outside(request.to, request.folder);
 }
 
 /// The same lines that the records come from.
@@ -132,7 +119,7 @@ GalleryResult write_gallery(const GalleryRequest& request,
          (request.folder / k_images).string());
   const fs::path place = checked_place(request.to, k_gallery_folder);
   GalleryFacts facts{input.dataset, conventions_of(request.folder),
-                     place_of(request.folder).lexically_relative(place).generic_string(),
+                     real_place(request.folder).lexically_relative(place).generic_string(),
                      request.notes, worst_first(run_checks(input, {}))};
   // Of most datasets nothing has changed, and nothing is written.
   if (is_whole_folder(place, k_gallery_folder))

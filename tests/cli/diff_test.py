@@ -35,6 +35,9 @@ class DiffTest(TinyCase):
         self.assertEqual(len(found["changed"]) + found["same"], 4)
         self.assertIn("recipe", found["dataset_fields"])
         self.assertEqual(json.loads((self.folder / "shown/.dsbuild-diff/diff.json").read_text()), found)
+        for own in ("images", "manifest", ".dsbuild"):
+            run = self.diff(self.out, other, "-o", other / own / "shown", code=2)
+            self.assertIn(f"outside the dataset's own {own}", run.err)
         shown = 0
         for image in found["changed"]:
             self.assertIn("engine", image["parts"])

@@ -8,7 +8,7 @@ import time
 
 from harness import IMAGES, TinyCase, main
 
-KILLS = int(os.environ.get("DSBUILD_TEST_KILLS", "15"))
+KILLS = int(os.environ.get("DSBUILD_TEST_KILLS", "8"))
 
 
 class StoreTest(TinyCase):
