@@ -226,7 +226,7 @@ class GalleryPage(unittest.TestCase):
         self.open(hash="i=3")
         self.wait("document.querySelector('#facts table')")
         self.assertEqual(self.value("document.getElementById('picture-title').textContent"), self.sets["some"][3]["id"])
-        self.open(hash="class=nothing&nonsense&error=a..b&size=7&i=9999&sort=none&check=9&%E0%A4%A")
+        self.open(hash="class=nothing&nonsense&error=a..b&size=7&i=9999&sort=none&check=99&%E0%A4%A")
         self.assertEqual((len(self.shown()), self.value("hashOf()")), (IMAGES, ""))
         self.assert_quiet()
 
