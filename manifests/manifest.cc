@@ -106,6 +106,7 @@ json to_json_value(const ImageRecord& image) {
   if (image.metres_per_pixel) line["metres_per_pixel"] = *image.metres_per_pixel;
   if (image.fold) line["fold"] = *image.fold;
   if (!image.other_classes.empty()) line["classes"] = image.other_classes;
+  if (!image.draws.empty()) line["draws"] = to_json_value(image.draws);
   add_counted(line, image);
   add_pose(line, image);
   return line;
@@ -159,6 +160,7 @@ json to_json_value(const DatasetRecord& dataset) {
   if (!dataset.about.empty()) object["about"] = dataset.about;
   if (!dataset.shapes.empty()) object["shapes"] = dataset.shapes;
   if (!dataset.hierarchies.empty()) object["hierarchies"] = dataset.hierarchies;
+  if (!dataset.draws.empty()) object["draws"] = to_json_value(dataset.draws);
   for (const auto& [name, plane] : dataset.planes)
     object["planes"][name] = {{"encoding", plane.encoding}, {"convention", plane.convention}};
   for (const Concern& concern : dataset.concerns)

@@ -3,6 +3,7 @@
 
 #include "manifests/camera_geometry.h"
 #include "manifests/concerns.h"
+#include "manifests/draws.h"
 #include "manifests/licences.h"
 #include "manifests/model_pose.h"
 #include "manifests/pixel_counts.h"
@@ -63,6 +64,7 @@ struct ImageRecord {
   std::optional<std::uint64_t> fold{};
   /// "classes": class path by DatasetRecord::hierarchies, "" for none. Not there where those are not.
   std::map<std::string, std::string> other_classes{};
+  DrawRecords draws{};  ///< of distributions in the recipe; not there where those are not
   std::vector<FileRecord> files;
   std::uint64_t seed = 0;  ///< below 2^53, so that every JSON reader gets it exactly
   int spp = 0, width = 0, height = 0;
@@ -112,6 +114,8 @@ struct DatasetRecord {
   std::map<std::string, std::vector<std::string>> hierarchies{};
   std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< "images", "models", "train", ...
   std::vector<LicenceRecord> licences;  ///< found beside the assets, as group_licences gives them
+  /// By key, of the images listed. Not there where the recipe has no distribution.
+  DrawSummaries draws{};
   /// By name, of the files beside the picture. Not there where there are none.
   std::vector<std::pair<std::string, PlaneRecord>> planes{};
   /// Model -> shape_of its mesh, of all models that have one; not there where none has.

@@ -3,6 +3,7 @@
 
 #include "manifests/json_text.h"
 
+#include <algorithm>
 #include <charconv>
 
 namespace ds {
@@ -97,10 +98,14 @@ std::optional<LineGlance> glance_at(std::string_view line) {
   Cursor at(line);
   if (!at.is_null(R"("class_id":)")) glance.class_id = at.count(R"("class_id":)");
   glance.class_path = at.text(R"("class_path":)");
-  if (at.follows(R"(,"classes":{)")) {
-    glance.other_classes = at.until(R"(,"environment":)");
-    glance.other_classes.erase(0, std::string_view(R"(,"classes":)").size());
-  }
+  // A quote inside a text has a backslash before it, so these stand between members only.
+  constexpr std::string_view k_classes = R"(,"classes":)", k_draws = R"(,"draws":)";
+  std::string_view between = at.until(R"(,"environment":)");
+  const std::size_t draws = std::min(between.find(k_draws), between.size());
+  if (between.starts_with(k_classes))
+    glance.other_classes = between.substr(k_classes.size(), draws - k_classes.size());
+  between.remove_prefix(draws);
+  if (!between.empty()) glance.draws = between.substr(k_draws.size());
   glance.environment = at.text(R"("environment":)");
   Cursor files = at.inside(R"("files":)", '[', R"(],"files_key":)");
   while (files.ok() && files.has(R"("kind":)")) {
@@ -151,6 +156,7 @@ LineGlance glance_at(const ImageRecord& image) {
       image.class_id,
       image.fold,
       image.other_classes.empty() ? "" : canonical_json(image.other_classes),
+      image.draws.empty() ? "" : canonical_json(to_json_value(image.draws)),
       image.render_key,
       image.files_key};
   for (const FileRecord& file : image.files)

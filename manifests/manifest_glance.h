@@ -22,7 +22,7 @@ struct LineGlance {
   std::uint64_t pixels = 0;  ///< width times height
   PixelCounts pixel_counts;
   std::optional<std::uint64_t> class_id, fold;
-  std::string other_classes;  ///< as canonical JSON; "" where there are none
+  std::string other_classes, draws;  ///< as canonical JSON; "" where there are none
   Hash128 render_key, files_key;
 };
 

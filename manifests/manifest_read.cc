@@ -223,6 +223,7 @@ ImageRecord image_from(const std::string& line, const SourcePlace& place,
   fields.text("material", image.material);
   fields.text("environment", image.environment);
   fields.text("view", image.view);
+  fields.object("draws", image.draws, draws_from);
   if (const json* files = fields.find("files"))
     image.files = files_from(*files, place, diagnostics);
   fields.count("seed", image.seed);
@@ -392,6 +393,7 @@ DatasetRecord dataset_from_json(const std::string& text, const std::string& file
                  [](Fields& f, const char* name, std::uint64_t& to) { f.count(name, to); });
     dataset.licences = format == 1 ? licences_of_format_1(fields, *object, place, diagnostics)
                                    : licences_from(fields, place, diagnostics);
+    fields.object("draws", dataset.draws, draw_summaries_from);
     read_planes(*object, place, diagnostics, dataset);
     read_mended_models(*object, place, diagnostics, dataset);
     read_concerns(*object, place, diagnostics, dataset.concerns);

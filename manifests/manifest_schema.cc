@@ -21,6 +21,9 @@ const json k_count{{"type", "integer"}, {"minimum", 0}};
 const json k_number{{"type", "number"}};
 const json k_hash{{"type", "string"}, {"pattern", "^[0-9a-f]{32}$"}};
 
+const json k_drawn{{"type", {"number", "array"}}, {"items", k_number}};
+const json k_drawn_or_null{{"type", {"number", "array", "null"}}, {"items", k_number}};
+
 json or_null(json schema) {
   schema["type"] = {schema["type"], "null"};
   return schema;
@@ -116,6 +119,7 @@ json image_schema() {
       {"split", {{"enum", {"train", "test", ""}}}},
       {"fold", said(k_count, "of cross-validation; not of the test split")},
       {"material", k_text},
+      {"draws", said(map_of(k_drawn), "what distributions of the recipe gave, by key")},
       {"environment", k_text},
       {"view", k_text},
       {"files", {{"type", "array"}, {"items", file_schema()}}},
@@ -154,9 +158,9 @@ json image_schema() {
                            {"camera", k_hash},
                            {"engine", k_hash}},
                           {"model", "material", "environment", "camera", "engine"})}};
-  json required = fields_of(
-      fields, {"classes", "fold", "metres_per_pixel", "box", "visible_fraction", "occlusion",
-               "truncation", "model_to_world", "model_to_camera", "model_box", "box_m"});
+  json required = fields_of(fields, {"classes", "draws", "fold", "metres_per_pixel", "box",
+                                     "visible_fraction", "occlusion", "truncation",
+                                     "model_to_world", "model_to_camera", "model_box", "box_m"});
   return headed(object_of(std::move(fields), std::move(required)),
                 "A line of manifest/images.jsonl of a dataset of dsbuild");
 }
@@ -181,13 +185,19 @@ json dataset_schema() {
         {"items", object_of({{"spdx", or_null(k_text)}, {"text", k_text}, {"assets", texts}},
                             {"spdx", "text", "assets"})}}},
       {"conventions", map_of(k_text)},
+      {"draws", map_of(object_of({{"distribution", said(k_text, "TOML")},
+                                  {"count", k_count},
+                                  {"min", k_drawn_or_null},
+                                  {"max", k_drawn_or_null},
+                                  {"mean", k_drawn_or_null}},
+                                 {"distribution", "count", "min", "max", "mean"}))},
       {"planes", map_of(object_of({{"encoding", k_text}, {"convention", k_text}},
                                   {"encoding", "convention"}))},
       {"concerns", map_of(object_of({{"count", k_count}, {"of", k_count}, {"examples", texts}},
                                     {"count", "of", "examples"}))},
       {"mended_models", map_of(map_of(k_count))}};
-  json required =
-      fields_of(fields, {"about", "shapes", "hierarchies", "planes", "concerns", "mended_models"});
+  json required = fields_of(
+      fields, {"about", "shapes", "hierarchies", "draws", "planes", "concerns", "mended_models"});
   return headed(object_of(std::move(fields), std::move(required)),
                 "manifest/dataset.json of a dataset of dsbuild");
 }

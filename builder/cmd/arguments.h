@@ -33,7 +33,7 @@ struct Arguments {
   std::string budget;
   bool json = false, dry_run = false, keep_going = false, force = false, explain = false,
        strict = false;
-  bool effects = false, ids = false;
+  bool effects = false, ids = false, draws = false;
   bool rehash = false;
   bool adopt = false;
   bool copy = false;
@@ -78,6 +78,7 @@ enum class Option {
   explain,
   strict,
   shard,
+  draws,
   effects,
   rerender,
   seed,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "builder/cmd/draws_text.h"
 #include "builder/cmd/effects_text.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/verbs.h"
+#include "builder/plan/dataset_manifest.h"
 #include "builder/plan/plan.h"
 #include "manifests/manifest.h"
 #include "tracer/base/canonical.h"
@@ -226,6 +228,8 @@ int run_explain(const Arguments& arguments) {
       object["parts"][k_part_names[i]] = image.keys.parts[i].hex();
     for (const auto& [part, change] : changes)
       object["changes"].push_back(to_json(part, change));
+    if (!dataset.recipe.drawn.empty())
+      object["draws"] = to_json_value(draws_of(image.spec, dataset.recipe));
     if (arguments.effects)
       object["effects"] = to_json(image_effects(dataset.recipe, inputs, image.spec));
     print_json(object);
@@ -240,6 +244,7 @@ int run_explain(const Arguments& arguments) {
   std::erase_if(changes, [&](const auto& change) { return follows(change, assigned); });
   if (!arguments.verbose) print_many(changes, image.spec);
   print_changes(changes, find);
+  print_draws(dataset.recipe, image.spec);
   say(Stream::result, "render key {}\n", image.keys.render.hex());
   for (std::size_t i = 0; i < k_part_count; ++i)
     say(Stream::result, "  {:<11} {}\n", k_part_names[i], image.keys.parts[i].hex());

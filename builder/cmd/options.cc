@@ -218,6 +218,11 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
                       "all N shares are made the dataset is whole [1/1]")
           ->type_name("I/N");
       return;
+    case Option::draws:
+      verb.add_flag("--draws", to.draws,
+                    "say what the recipe's distributions give: least, greatest and mean, with -v "
+                    "each image's");
+      break;
     case Option::effects:
       verb.add_flag("--effects", to.effects,
                     "list what the image's program simulates and what it leaves out, and why");

@@ -2,6 +2,7 @@
 #include "builder/plan/plan.h"
 
 #include "builder/cmd/concerns_text.h"
+#include "builder/cmd/draws_text.h"
 #include "builder/cmd/forecast_text.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/stop_signal.h"
@@ -179,8 +180,12 @@ int run_plan(const Arguments& arguments) {
   const std::vector<Concern> concerns = tell_planned_concerns(dataset.recipe, plan);
   nlohmann::json object = arguments.json ? plan_json(plan, counts) : nlohmann::json();
   if (arguments.json) object["concerns"] = to_json(concerns);
+  if (arguments.json && arguments.draws) object.update(draws_json(dataset.recipe, plan));
   if (!arguments.json) {
-    if (!wish.any) print_plan(Stream::result, plan, arguments.verbose);
+    if (arguments.draws)
+      print_draws(dataset.recipe, plan, arguments.verbose);
+    else if (!wish.any)
+      print_plan(Stream::result, plan, arguments.verbose);
     say(Stream::result, "{}\n", summary(counts));
     print_manifest_line(plan);
     print_edited(Stream::result, plan);

@@ -14,7 +14,7 @@ const std::vector<Verb>& verbs() {
       {"plan",
        "list the images a build would make, and why; or forecast its time and disk",
        {target, overrides, output_folder, store_folder, shard, rehash, adopt, forecast, device,
-        verbose, json},
+        draws, verbose, json},
        run_plan},
       {"status",
        "say how much of a dataset is up to date",

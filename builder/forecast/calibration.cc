@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/forecast/calibration.h"
 
+#include "builder/plan/image_scene.h"
 #include "tracer/base/canonical.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
@@ -156,11 +157,11 @@ std::optional<Probe> probe_from_json(const std::string& text) {
 namespace {
 
 /// An image whose model cannot be read keeps its camera: it is left out where its key is made.
-void fit_images(std::vector<PairImages>& pairs, const Recipe& recipe, Inputs& inputs) {
+void settle_images(std::vector<PairImages>& pairs, const Recipe& recipe, Inputs& inputs) {
   for (PairImages& pair : pairs)
     for (ImageSpec& image : pair.images) {
       try {
-        fit_image(image, recipe, inputs.model_sphere(image.model_file, recipe.normalise));
+        settle_image(image, recipe, inputs);
       } catch (const DamagedDatabase&) {
         throw;
       } catch (const Error&) {
@@ -177,7 +178,7 @@ Calibration calibrate(const Recipe& recipe, Inputs& inputs, Renderer& renderer,
   calibration.device = renderer.device();
   const bool by_error = wish.by_error && recipe.outputs.image;
   std::vector<PairImages> wanted = images_to_probe(expand(recipe));
-  if (recipe.camera_fit) fit_images(wanted, recipe, inputs);
+  settle_images(wanted, recipe, inputs);
   const std::map<std::string, Hash128> keys =
       probe_keys(recipe, inputs, wanted, calibration.device);
   std::map<std::string, Probe> probes;

@@ -75,7 +75,12 @@ ImageFacts facts_of(const ImageSpec& spec, const PixelCounts& counts) {
           *spec.split,
           static_cast<std::uint64_t>(spec.engine.width) *
               static_cast<std::uint64_t>(spec.engine.height),
-          counts};
+          counts,
+          &spec};
+}
+
+std::string draws_text(const ImageSpec& spec, const Recipe& recipe) {
+  return recipe.drawn.empty() ? "" : canonical_json(to_json_value(draws_of(spec, recipe)));
 }
 
 /// Whether the line labels the image as the plan does.
@@ -94,8 +99,8 @@ bool Lines::still_holds(const LineGlance& line, const Wanted& wanted) const {
   const ImageSpec& spec = image.spec;
   const ImageKeys& keys = image.keys;
   if (line.render_key != keys.render || line.files_key != keys.files || !is_labelled(line, spec) ||
-      line.material != *spec.material_name || line.environment != *spec.environment_name ||
-      line.model != *spec.model_name)
+      line.draws != draws_text(spec, dataset_.recipe) || line.material != *spec.material_name ||
+      line.environment != *spec.environment_name || line.model != *spec.model_name)
     return false;
   return std::equal(line.files.begin(), line.files.end(), keys.outputs.begin(), keys.outputs.end(),
                     [&](const LineGlance::File& file, const OutputFile& output) {

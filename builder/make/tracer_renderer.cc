@@ -2,6 +2,7 @@
 #include "builder/make/plane_outputs.h"
 #include "builder/make/renderer.h"
 #include "builder/make/scene_ahead.h"
+#include "builder/plan/image_scene.h"
 #include "builder/plan/keys.h"
 #include "tracer/base/error.h"
 #include "tracer/device/plane_types.h"
@@ -63,8 +64,8 @@ class TracerRenderer : public Renderer {
     SceneUse use;
   };
   static std::string name_of(const ImageSpec& image) {
-    return fmt::format("{}\n{}\n{}", image.model_file->native(), image.material_file->native(),
-                       image.environment_folder->native());
+    return fmt::format("{}\n{}\n{}\n{}", image.model_file->native(), image.material_file->native(),
+                       image.environment_folder->native(), canonical_change(change_of(image)));
   }
 
   void load(const ImageSpec& image, SceneUse use) {
@@ -98,8 +99,13 @@ class TracerRenderer : public Renderer {
     const Scene& environment = inputs_.environment(image.environment_folder);
     const Scene& material = inputs_.material(image.material_file);
     return [this, use, engine = image.engine, &environment, &material, meshes = &inputs_.meshes(),
+            change = change_of(image),
             source = inputs_.model_source(image.model_file, recipe_.normalise)] {
-      return tracer_.make_ready(compose(environment, material, meshes->get(source)), use, engine);
+      Mesh model = meshes->get(source);
+      Scene scene = change == EnvironmentChange{}
+                        ? compose(environment, material, std::move(model))
+                        : compose(changed(environment, change), material, std::move(model));
+      return tracer_.make_ready(std::move(scene), use, engine);
     };
   }
 

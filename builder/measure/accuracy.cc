@@ -5,6 +5,7 @@
 #include "builder/measure/flip.h"
 #include "builder/measure/ladder.h"
 #include "builder/measure/ssim.h"
+#include "builder/plan/image_scene.h"
 #include "builder/plan/keys.h"
 #include "tracer/base/error.h"
 #include "tracer/base/hash.h"
@@ -121,9 +122,9 @@ void fit(PairAccuracy& pair) {
 
 Subject subject_of(const ImageSpec& image, const Recipe& recipe, Inputs& inputs) {
   Subject subject;
-  subject.scene =
-      compose(inputs.environment(image.environment_folder), inputs.material(image.material_file),
-              inputs.model_mesh(image.model_file, recipe.normalise));
+  subject.scene = compose(changed(inputs.environment(image.environment_folder), change_of(image)),
+                          inputs.material(image.material_file),
+                          inputs.model_mesh(image.model_file, recipe.normalise));
   load_images(subject.scene);
   subject.camera = image.camera;
   subject.engine = image.engine;
@@ -208,9 +209,7 @@ Accuracy measure_accuracy(const Recipe& recipe, Inputs& inputs, SceneTracer& tra
   if (accuracy.options.most_spp == 0) accuracy.options.most_spp = std::max(16, recipe.engine.spp);
   std::vector<PairChoice> pairs = representative_images(expand(recipe));
   for (PairChoice& chosen : pairs) {
-    if (recipe.camera_fit)
-      fit_image(chosen.image, recipe,
-                inputs.model_sphere(chosen.image.model_file, recipe.normalise));
+    settle_image(chosen.image, recipe, inputs);
     told(fmt::format("{} of {}: {} in {}, {}", accuracy.pairs.size() + 1, pairs.size(),
                      *chosen.image.material_name, *chosen.image.environment_name, chosen.image.id));
     const Subject subject = subject_of(chosen.image, recipe, inputs);

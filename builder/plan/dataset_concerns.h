@@ -19,6 +19,7 @@ struct ImageFacts {
   std::string_view id, model, class_path, split;
   std::uint64_t pixels = 0;  ///< width times height
   PixelCounts counts{};
+  const ImageSpec* spec = nullptr;  ///< as the plan has it; none for a line of an earlier build
 };
 
 /// Every kind of Concern, counted for the images that a manifest lists; `planned` is

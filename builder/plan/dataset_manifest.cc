@@ -43,7 +43,43 @@ std::map<std::string, std::vector<std::string>> hierarchies_of(const Plan& plan)
   return hierarchies;
 }
 
+std::vector<double> numbers_of(const DrawnValue& value, const Drawn& drawn) {
+  return {value.begin(),
+          value.begin() + static_cast<std::ptrdiff_t>(width_of(drawn.distribution.kind))};
+}
+
 }  // namespace
+
+DrawRecords draws_of(const ImageSpec& image, const Recipe& recipe) {
+  DrawRecords draws;
+  for (std::size_t i = 0; i < recipe.drawn.size(); ++i) {
+    const Drawn& drawn = recipe.drawn[i];
+    draws[drawn.key] = {numbers_of(image.variables->draws[i], drawn),
+                        drawn.distribution.kind == DrawnKind::integer};
+  }
+  return draws;
+}
+
+DrawSummaries summaries_of(const Recipe& recipe, const std::vector<const ImageSpec*>& images) {
+  DrawSummaries summaries;
+  for (std::size_t i = 0; i < recipe.drawn.size(); ++i) {
+    DrawSummary& summary = summaries[recipe.drawn[i].key];
+    summary.distribution = recipe.drawn[i].text;
+    for (const ImageSpec* image : images) {
+      const std::vector<double> values = numbers_of(image->variables->draws[i], recipe.drawn[i]);
+      if (summary.count++ == 0) summary.least = summary.most = summary.mean = values;
+      if (summary.count == 1) continue;
+      for (std::size_t j = 0; j < values.size(); ++j) {
+        summary.least[j] = std::min(summary.least[j], values[j]);
+        summary.most[j] = std::max(summary.most[j], values[j]);
+        summary.mean[j] += values[j];
+      }
+    }
+    for (double& mean : summary.mean)
+      mean /= static_cast<double>(summary.count);
+  }
+  return summaries;
+}
 
 std::optional<std::uint64_t> class_id_of(const Plan& plan, const std::string& class_path) {
   const auto at = plan.class_ids.find(class_path);
@@ -65,6 +101,7 @@ ImageRecord image_record(const PlannedImage& image, const Recipe& recipe, const 
   record.fold = spec.fold;
   record.class_id = class_id_of(plan, *spec.class_path);
   record.other_classes = spec.other_classes;
+  record.draws = draws_of(spec, recipe);
   record.material = spec.material_name;
   record.environment = spec.environment_name;
   record.view = spec.view;
@@ -126,6 +163,10 @@ DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
   for (const auto& [path, id] : plan.class_ids)
     record.class_paths[id] = path;
   record.hierarchies = hierarchies_of(plan);
+  std::vector<const ImageSpec*> specs;
+  for (const ImageFacts& image : images)
+    if (image.spec != nullptr) specs.push_back(image.spec);
+  record.draws = summaries_of(recipe, specs);
   record.counts = {{"images", images.size()}, {"models", models.size()}};
   for (const auto& [split, count] : splits)
     record.counts.emplace_back(split, count);

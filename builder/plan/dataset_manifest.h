@@ -18,6 +18,10 @@ std::string program_version();
 /// Of a class of the plan; nothing of "".
 std::optional<std::uint64_t> class_id_of(const Plan& plan, const std::string& class_path);
 
+/// What the recipe drew for an image, and for some.
+DrawRecords draws_of(const ImageSpec& image, const Recipe& recipe);
+DrawSummaries summaries_of(const Recipe& recipe, const std::vector<const ImageSpec*>& images);
+
 /// The manifest's line for an image whose files are in place. Throws Error(io) where the database
 /// does not know one.
 ImageRecord image_record(const PlannedImage& image, const Recipe& recipe, const Plan& plan,

@@ -6,6 +6,7 @@
 #include "tracer/kernels/layout.h"
 #include "tracer/scene/scene_reads.h"
 #include "tracer/scene/sdl.h"
+#include "tracer/scene/vary.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -123,7 +124,8 @@ EnvironmentFacts facts_of(const Scene& environment) {
                       [](const Material& material) { return !material.unphysical.empty(); }),
           environment.lost_faces,
           largest_object_id,
-          largest_material_id(environment)};
+          largest_material_id(environment),
+          gain_changes_program(environment)};
 }
 
 std::string to_text(const EnvironmentFacts& facts, const std::vector<SourceFile>& files) {
@@ -139,7 +141,8 @@ std::string to_text(const EnvironmentFacts& facts, const std::vector<SourceFile>
                 {"unphysical", facts.unphysical},
                 {"lost_faces", facts.lost_faces},
                 {"largest_object_id", facts.largest_object_id},
-                {"largest_material_id", facts.largest_material_id}}
+                {"largest_material_id", facts.largest_material_id},
+                {"gain_changes_program", facts.gain_changes_program}}
         .dump();
   } catch (const json::exception&) {  // a name that is no UTF-8
     return "";
@@ -158,7 +161,8 @@ std::optional<EnvironmentFacts> facts_from_text(const std::string& text) {
                             object.at("unphysical").get<bool>(),
                             object.at("lost_faces").get<bool>(),
                             object.at("largest_object_id").get<std::uint32_t>(),
-                            object.at("largest_material_id").get<std::uint32_t>()};
+                            object.at("largest_material_id").get<std::uint32_t>(),
+                            object.at("gain_changes_program").get<bool>()};
   } catch (const json::exception&) {
     return std::nullopt;
   } catch (const Error&) {  // a file that cannot be looked at: reading it says why

@@ -24,6 +24,7 @@ struct EnvironmentFacts {
   bool unphysical = false;    ///< a material of it gives back more light than it gets, or the like
   bool lost_faces = false;    ///< a mesh of it did when it was read
   std::uint32_t largest_object_id = 0, largest_material_id = 0;
+  bool gain_changes_program = false;  ///< see vary.h
 };
 
 /// What of an object a plane reads beside its places: its traits of kernels/plane_traits.h that say

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/keys.h"
 
+#include "builder/plan/image_scene.h"
 #include "builder/plan/output_kinds.h"
 #include "builder/plan/plane_keys.h"
 #include "builder/plan/text_form.h"
@@ -54,8 +55,11 @@ Mesh stand_in() {
 }  // namespace
 
 Scene scene_without_model(Inputs& inputs, const ImageSpec& image) {
-  return compose(inputs.environment(image.environment_folder), inputs.material(image.material_file),
-                 stand_in());
+  const Scene& environment = inputs.environment(image.environment_folder);
+  const Scene& material = inputs.material(image.material_file);
+  const EnvironmentChange gain{0, change_of(image).gain};
+  return gain == EnvironmentChange{} ? compose(environment, material, stand_in())
+                                     : compose(changed(environment, gain), material, stand_in());
 }
 
 const ToneMap& tone_map_of(const Recipe& recipe, const Scene& environment) {
@@ -138,6 +142,7 @@ bool same_but_seed(const EngineSettings& a, const EngineSettings& b) {
 struct View {
   Shared<std::string> name;  ///< keeps the address that is this entry's name
   Camera camera;
+  EnvironmentChange change;
   int width = 0, height = 0;
   Hash128 part;
   std::vector<TextForm> planes;  ///< of each wanted: its text, plane_form
@@ -152,9 +157,10 @@ struct Environment {
   std::map<unsigned, std::string> shapes;
   TextForm picture;  ///< the picture's output
   std::unordered_map<const void*, View> views;
+  bool gain_changes_program = false;
 };
 
-/// What images of one material, environment and kind of lens share.
+/// What images of one material, environment, kind of lens and of light share.
 struct Kind {
   Shared<std::filesystem::path> material, environment;  ///< keep the addresses that are its name
   Hash128 material_part;
@@ -171,10 +177,16 @@ struct Kind {
   std::optional<TextForm> kept;
 };
 
+/// Whether the image's gain makes another program.
+bool is_gained(const ImageSpec& image, const Environment& environment) {
+  return environment.gain_changes_program && change_of(image).gain != 1;
+}
+
 /// All that the kinds of effects in an image depend on.
 std::string kind_name(const ImageSpec& image, const Environment& environment, Hash128 material) {
-  return fmt::format("{} {} {}", material.hex(), environment.part.hex(),
-                     image.camera.lens_radius_m > 0 ? "lens" : "pinhole");
+  return fmt::format("{} {} {}{}", material.hex(), environment.part.hex(),
+                     image.camera.lens_radius_m > 0 ? "lens" : "pinhole",
+                     is_gained(image, environment) ? " gained" : "");
 }
 
 }  // namespace
@@ -207,7 +219,7 @@ class KeyMaker::State {
   Shared<std::filesystem::path> model_;  ///< the last image's: a model's images follow each other
   std::array<std::optional<Hash128>, 8> model_parts_;  ///< by what of the model is read
   std::unordered_map<const void*, Environment> environments_;
-  std::map<std::tuple<const void*, const void*, bool>, Kind> kinds_;
+  std::map<std::tuple<const void*, const void*, bool, bool>, Kind> kinds_;
   std::deque<std::pair<SceneEffects, std::string>> programs_;
   TextForm five_, film_sums_, files_;
 };
@@ -255,6 +267,7 @@ Environment& KeyMaker::State::environment_of(const ImageSpec& image) {
   made.part = texts_.add(facts.text);
   made.files = canonical_files(recipe_.outputs, tone_map, facts);
   made.shapes = facts.shapes;
+  made.gain_changes_program = facts.gain_changes_program;
   made.picture = output_form("image", k_picture_format, canonical_tone_map(tone_map));
   return environments_.emplace(made.folder.identity(), std::move(made)).first->second;
 }
@@ -262,13 +275,16 @@ Environment& KeyMaker::State::environment_of(const ImageSpec& image) {
 View& KeyMaker::State::view_of(Environment& environment, const ImageSpec& image) {
   View& view = environment.views[image.view.identity()];
   const EngineSettings& engine = image.engine;
-  if (view.width == engine.width && view.height == engine.height && same(view.camera, image.camera))
+  const EnvironmentChange change = change_of(image);
+  if (view.width == engine.width && view.height == engine.height &&
+      same(view.camera, image.camera) && view.change == change)
     return view;
   view.name = image.view;
   view.camera = image.camera;
+  view.change = change;
   view.width = engine.width;
   view.height = engine.height;
-  view.part = hash_text(texts_.fold(canonical_camera(image.camera)));
+  view.part = hash_text(texts_.fold(canonical_camera(image.camera) + canonical_change(change)));
   view.planes.clear();
   for (const WantedPlane& plane : planes_)
     view.planes.push_back(is_of_light(*plane.type) ? TextForm()
@@ -327,7 +343,8 @@ Hash128 KeyMaker::State::program_hash(const ImageSpec& image, const Environment&
 
 Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& environment) {
   const bool lens = image.camera.lens_radius_m > 0;
-  Kind& kind = kinds_[{image.material_file.identity(), image.environment_folder.identity(), lens}];
+  Kind& kind = kinds_[{image.material_file.identity(), image.environment_folder.identity(), lens,
+                       is_gained(image, environment)}];
   if (kind.made && same_but_seed(kind.settings, image.engine)) return kind;
   EngineSettings settings = image.engine;
   settings.seed = 0;
@@ -425,7 +442,7 @@ void KeyMaker::State::add_texts(const ImageSpec& image) {
   Kind& kind = kind_of(image, environment_of(image));
   texts_.add(
       canonical_model(inputs_.model_hashes(image.model_file), kind.reads, recipe_.normalise));
-  texts_.add(canonical_camera(image.camera));
+  texts_.add(canonical_camera(image.camera) + canonical_change(change_of(image)));
   texts_.add(kind.engine.fill({view_of_digits(fmt::format_int(image.engine.seed))}));
   if (texts_.find(kind.program) != nullptr) return;
   CanonicalText text;

@@ -2,6 +2,7 @@
 #include "builder/plan/plan.h"
 
 #include "builder/plan/hash_index.h"
+#include "builder/plan/image_scene.h"
 #include "builder/plan/licence_files.h"
 #include "builder/plan/limits.h"
 #include "builder/plan/manifest_state.h"
@@ -322,6 +323,19 @@ std::uint64_t PlannedImage::samples() const {
          kept_samples;
 }
 
+namespace {
+
+/// What an image changes of its environment stands beside its camera, which other images do not
+/// share either.
+std::pair<std::string, PropertyChange> of_its_part(const char* part, PropertyChange change) {
+  constexpr std::string_view k_of_environment = "environments.";
+  if (!change.name.starts_with(k_of_environment)) return {part, std::move(change)};
+  change.name.erase(0, k_of_environment.size());
+  return {"environment", std::move(change)};
+}
+
+}  // namespace
+
 Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
   check_licensed(dataset.recipe);
   Plan plan;
@@ -339,9 +353,7 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
     try {
       check_normals(dataset.recipe, inputs, image.spec.model_file);
       check_ids(dataset.recipe, inputs, image.spec);
-      if (dataset.recipe.camera_fit)
-        fit_image(image.spec, dataset.recipe,
-                  inputs.model_sphere(image.spec.model_file, dataset.recipe.normalise));
+      settle_image(image.spec, dataset.recipe, inputs);
       if (image.spec.engine.target)
         image.spec.engine.target->tone_map =
             tone_map_of(dataset.recipe, inputs.environment_facts(image.spec.environment_folder));
@@ -408,7 +420,7 @@ std::vector<std::pair<std::string, PropertyChange>> changes_since(const PlannedI
       continue;
     }
     for (PropertyChange& change : diff_texts(*old_text, *new_text))
-      changes.push_back({k_part_names[i], std::move(change)});
+      changes.push_back(of_its_part(k_part_names[i], std::move(change)));
   }
   return changes;
 }

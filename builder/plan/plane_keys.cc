@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/plane_keys.h"
 
+#include "builder/plan/image_scene.h"
 #include "builder/plan/keys.h"
 #include "tracer/base/canonical.h"
 #include "tracer/device/program_text.h"
@@ -64,6 +65,7 @@ TextForm plane_form(const WantedPlane& plane, const std::map<unsigned, std::stri
   for (const char* part : parts)
     text.add(part, "");
   text.add("environment", alone ? "" : shapes.at(plane_reads(*plane.type)));
+  const std::string turn = alone ? "" : canonical_turn(change_of(image));
   add_vector(text, "camera.position", image.camera.position);
   add_vector(text, "camera.target", image.camera.target);
   add_vector(text, "camera.up", image.camera.up);
@@ -72,7 +74,7 @@ TextForm plane_form(const WantedPlane& plane, const std::map<unsigned, std::stri
   text.add(fmt::format("camera.{}", type.span_name()), span_of(image.camera));
   text.add("width", image.engine.width);
   text.add("height", image.engine.height);
-  return {text.text(), parts};
+  return {text.text() + turn, parts};
 }
 
 Hash128 plane_program(const PlaneType& plane, const std::string& of, Inputs& inputs,

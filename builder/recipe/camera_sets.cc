@@ -5,7 +5,12 @@
 #include "tracer/base/log.h"
 #include "tracer/scene/type_tables.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 namespace ds {
@@ -24,10 +29,33 @@ Vec3d point_of(const RecipeValue& value) {
   return {list[0].number(), list[1].number(), list[2].number()};
 }
 
-std::vector<Vec3d> offset_by(std::vector<Vec3d> positions, Vec3d offset) {
-  for (Vec3d& position : positions)
-    position = position + offset;
-  return positions;
+Vec3d vector_of(const std::array<double, 3>& point) {
+  return {point[0], point[1], point[2]};
+}
+
+constexpr Vec3d k_dodecahedron[] = {
+    {1.618, 0, 0},     {.618, 1.618, 0}, {-.618, 1.618, 0}, {-1.618, 0, 0},   {-.618, -1.618, 0},
+    {.618, -1.618, 0}, {1.618, 0, .618}, {1, 1, 1},         {-1, 1, 1},       {-1.618, 0, .618},
+    {-1, -1, 1},       {1, -1, 1},       {0, .618, 1.618},  {0, -.618, 1.618}};
+
+Vec3d on_dodecahedron(std::size_t i, double distance_m, bool normalise) {
+  const Vec3d& v = k_dodecahedron[i];
+  return v * (distance_m / (normalise ? length(v) : 1.732));
+}
+
+Vec3d on_orbit(std::size_t i, int count, double distance_m, double elevation_deg,
+               double azimuth_deg) {
+  const double radius = distance_m * cos_deg(elevation_deg);
+  const double azimuth = azimuth_deg + 360.0 * static_cast<double>(i) / count;
+  return {radius * cos_deg(azimuth), radius * sin_deg(azimuth),
+          distance_m * sin_deg(elevation_deg)};
+}
+
+Vec3d on_hemisphere(std::size_t i, int count, double distance_m, double azimuth_deg) {
+  const double number = static_cast<double>(i), z = 1.0 - (number + 0.5) / count;
+  const double radius = std::sqrt(1.0 - z * z);
+  const double azimuth = azimuth_deg + std::fmod(number * k_golden_angle_deg, 360.0);
+  return distance_m * Vec3d{radius * cos_deg(azimuth), radius * sin_deg(azimuth), z};
 }
 
 std::vector<Vec3d> listed_positions(const Settings& settings) {
@@ -45,8 +73,15 @@ std::vector<Vec3d> listed_positions(const Settings& settings) {
 }
 
 bool is_fit(const Settings& settings) {
-  return settings.text("camera.set") != "list" &&
+  return settings.applies(*find_key("camera.distance_m")) &&
          settings.literal("camera.distance_m") == "\"fit\"";
+}
+
+CameraFit::Focus focus_of(const Settings& settings) {
+  const std::string& focus = settings.text("camera.focus");
+  return focus == "distance" ? CameraFit::Focus::distance
+         : focus == "target" ? CameraFit::Focus::target
+                             : CameraFit::Focus::origin;
 }
 
 std::optional<CameraFit> fit_of(const Settings& settings) {
@@ -59,28 +94,49 @@ std::optional<CameraFit> fit_of(const Settings& settings) {
                       "must not be given with camera.distance_m = \"fit\", which chooses it");
   CameraFit fit;
   fit.margin = settings.number("camera.fit_margin");
-  const std::string& focus = settings.text("camera.focus");
-  fit.focus = focus == "distance" ? CameraFit::Focus::distance
-              : focus == "target" ? CameraFit::Focus::target
-                                  : CameraFit::Focus::origin;
+  fit.focus = focus_of(settings);
   return fit;
 }
 
-std::vector<Vec3d> positions_of(const Settings& settings, Vec3d target) {
-  const std::string& set = settings.text("camera.set");
-  if (set == "list") return listed_positions(settings);
-  const double distance_m = is_fit(settings) ? 1 : settings.number("camera.distance_m");
-  if (set == "half-dodecahedron") {
-    return offset_by(half_dodecahedron(distance_m, settings.boolean("camera.normalise")), target);
+CameraSet read_set(const Settings& settings) {
+  CameraSet set;
+  constexpr std::array<std::string_view, 5> k_kinds = {"half-dodecahedron", "list", "orbit",
+                                                       "hemisphere", "random"};
+  const auto kind = std::find(k_kinds.begin(), k_kinds.end(), settings.text("camera.set"));
+  DS_ASSERT(kind != k_kinds.end());
+  set.kind = static_cast<CameraSet::Kind>(kind - k_kinds.begin());
+  set.count = settings.integer("camera.count");
+  set.normalise = settings.boolean("camera.normalise");
+  if (set.kind == CameraSet::Kind::list) set.positions = listed_positions(settings);
+  if (set.kind == CameraSet::Kind::random && !settings.given("camera.position_m"))
+    settings.complain("camera.position_m", "must be given with camera.set = \"random\"");
+  set.type = find_camera_type(settings.text("camera.type"));
+  set.focus = focus_of(settings);
+  set.fits = is_fit(settings);
+  return set;
+}
+
+std::size_t view_count(const CameraSet& set) {
+  if (set.kind == CameraSet::Kind::half_dodecahedron) return std::size(k_dodecahedron);
+  if (set.kind == CameraSet::Kind::list) return set.positions.size();
+  return static_cast<std::size_t>(set.count);
+}
+
+Vec3d position_of(const CameraSet& set, const Variables& v, std::size_t i) {
+  const Vec3d target = vector_of(v.target);
+  switch (set.kind) {
+    case CameraSet::Kind::half_dodecahedron:
+      return on_dodecahedron(i, v.distance_m, set.normalise) + target;
+    case CameraSet::Kind::list:
+      return set.positions[i];
+    case CameraSet::Kind::orbit:
+      return on_orbit(i, set.count, v.distance_m, v.elevation_deg, v.azimuth_deg) + target;
+    case CameraSet::Kind::hemisphere:
+      return on_hemisphere(i, set.count, v.distance_m, v.azimuth_deg) + target;
+    case CameraSet::Kind::random:
+      break;
   }
-  const int count = settings.integer("camera.count");
-  const double azimuth_deg = settings.number("camera.azimuth_deg");
-  if (set == "orbit") {
-    return offset_by(orbit(count, distance_m, settings.number("camera.elevation_deg"), azimuth_deg),
-                     target);
-  }
-  DS_ASSERT(set == "hemisphere");
-  return offset_by(hemisphere(count, distance_m, azimuth_deg), target);
+  return vector_of(v.position_m) + target;
 }
 
 /// The numbers of the views to use, ascending.
@@ -104,43 +160,11 @@ std::set<std::size_t> chosen_views(const Settings& settings, std::size_t count) 
   return chosen;
 }
 
-/// Sets what lies along the viewing axis: up and focus. False, and a finding, where it cannot.
-bool aim(const Settings& settings, const std::string& name, Camera& camera) {
-  const Vec3d forward = normalized(camera.target - camera.position);
-  if (length(forward) == 0) {
-    settings.complain("camera.target",
-                      fmt::format("must not be where a camera stands, got view {} there", name));
-    return false;
-  }
-  if (length(cross(forward, camera.up)) < k_least_sine) camera.up = {0, 1, 0};
-  const std::string& focus = settings.text("camera.focus");
-  if (focus == "distance") {
-    if (const RecipeValue* distance = settings.find("camera.focus_distance_m")) {
-      camera.focus_distance_m = distance->number();
-    }
-    return true;
-  }
-  if (is_fit(settings)) return true;  // the distance is each model's: see fit_camera
-  const Vec3d sharp = focus == "target" ? camera.target : Vec3d{};
-  camera.focus_distance_m = dot(sharp - camera.position, forward);
-  if (camera.focus_distance_m > 0) return true;
-  if (camera.lens_radius_m == 0) {  // sharp everywhere: any distance does
-    camera.focus_distance_m = length(camera.target - camera.position);
-    return true;
-  }
-  settings.complain(
-      "camera.focus",
-      fmt::format("must be in front of every camera, got {} m for view {}; \"target\" "
-                  "always is",
-                  camera.focus_distance_m, name));
-  return false;
-}
-
 /// Says that a focus is chosen for a pinhole.
-void warn_of_idle_focus(const Settings& settings) {
+void warn_of_idle_focus(const Settings& settings, double lens_radius_m) {
   const RecipeValue* focus = settings.find("camera.focus");
-  if (settings.number("camera.lens_radius_m") > 0 || !settings.given("camera.focus") ||
-      settings.text("camera.focus") == "origin")
+  if (lens_radius_m > 0 || settings.distribution("camera.lens_radius_m") != nullptr ||
+      !settings.given("camera.focus") || settings.text("camera.focus") == "origin")
     return;
   warn(
       fmt::format("{}: camera.focus has no effect with camera.lens_radius_m = 0, a pinhole: all "
@@ -151,59 +175,88 @@ void warn_of_idle_focus(const Settings& settings) {
 }  // namespace
 
 std::vector<Vec3d> half_dodecahedron(double distance_m, bool normalise) {
-  static constexpr Vec3d k_table[] = {
-      {1.618, 0, 0},     {.618, 1.618, 0}, {-.618, 1.618, 0}, {-1.618, 0, 0},   {-.618, -1.618, 0},
-      {.618, -1.618, 0}, {1.618, 0, .618}, {1, 1, 1},         {-1, 1, 1},       {-1.618, 0, .618},
-      {-1, -1, 1},       {1, -1, 1},       {0, .618, 1.618},  {0, -.618, 1.618}};
   std::vector<Vec3d> positions;
-  for (const Vec3d& v : k_table)
-    positions.push_back(v * (distance_m / (normalise ? length(v) : 1.732)));
+  for (std::size_t i = 0; i < std::size(k_dodecahedron); ++i)
+    positions.push_back(on_dodecahedron(i, distance_m, normalise));
   return positions;
 }
 
 std::vector<Vec3d> orbit(int count, double distance_m, double elevation_deg, double azimuth_deg) {
-  const double radius = distance_m * cos_deg(elevation_deg);
-  const double z = distance_m * sin_deg(elevation_deg);
   std::vector<Vec3d> positions;
-  for (int i = 0; i < count; ++i) {
-    const double azimuth = azimuth_deg + 360.0 * i / count;
-    positions.push_back({radius * cos_deg(azimuth), radius * sin_deg(azimuth), z});
-  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+    positions.push_back(on_orbit(i, count, distance_m, elevation_deg, azimuth_deg));
   return positions;
 }
 
 std::vector<Vec3d> hemisphere(int count, double distance_m, double azimuth_deg) {
   std::vector<Vec3d> positions;
-  for (int i = 0; i < count; ++i) {
-    const double z = 1.0 - (i + 0.5) / count;
-    const double radius = std::sqrt(1.0 - z * z);
-    const double azimuth = azimuth_deg + std::fmod(i * k_golden_angle_deg, 360.0);
-    positions.push_back(distance_m *
-                        Vec3d{radius * cos_deg(azimuth), radius * sin_deg(azimuth), z});
-  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+    positions.push_back(on_hemisphere(i, count, distance_m, azimuth_deg));
   return positions;
 }
 
-CameraViews make_cameras(const Settings& settings) {
-  warn_of_idle_focus(settings);
+Camera camera_of(const CameraSet& set, const Variables& variables, std::size_t number) {
+  Camera camera;
+  camera.position = position_of(set, variables, number);
+  camera.target = vector_of(variables.target);
+  camera.type = set.type;
+  span_of(camera) = variables.span;
+  camera.lens_radius_m = variables.lens_radius_m;
+  const Vec3d forward = normalized(camera.target - camera.position);
+  if (length(cross(forward, camera.up)) < k_least_sine) camera.up = {0, 1, 0};
+  if (variables.roll_deg != 0) {
+    const Vec3d right = normalized(cross(forward, camera.up));
+    camera.up =
+        cross(right, forward) * cos_deg(variables.roll_deg) + right * sin_deg(variables.roll_deg);
+  }
+  if (set.focus == CameraFit::Focus::distance) {
+    camera.focus_distance_m = variables.focus_distance_m;
+    return camera;
+  }
+  if (set.fits) return camera;  // the distance is each model's: see fit_camera
+  const Vec3d sharp = set.focus == CameraFit::Focus::target ? camera.target : Vec3d{};
+  camera.focus_distance_m = dot(sharp - camera.position, forward);
+  // A pinhole is sharp everywhere: any distance does.
+  if (camera.focus_distance_m <= 0 && camera.lens_radius_m == 0)
+    camera.focus_distance_m = length(camera.target - camera.position);
+  return camera;
+}
+
+std::optional<CameraFault> fault_of(const CameraSet& set, const Camera& camera,
+                                    std::string_view view) {
+  if (length(camera.target - camera.position) == 0)
+    return CameraFault{"camera.target",
+                       fmt::format("must not be where a camera stands, got view {} there", view)};
+  if (set.focus == CameraFit::Focus::distance || set.fits || camera.focus_distance_m > 0)
+    return std::nullopt;
+  return CameraFault{
+      "camera.focus",
+      fmt::format("must be in front of every camera, got {} m for view {}; \"target\" always is",
+                  camera.focus_distance_m, view)};
+}
+
+CameraViews make_cameras(const Settings& settings, const Variables& constants) {
+  warn_of_idle_focus(settings, constants.lens_radius_m);
   if (settings.text("camera.focus") == "distance" && !settings.given("camera.focus_distance_m")) {
     settings.complain("camera.focus_distance_m", "must be given with camera.focus = \"distance\"");
   }
-  const Vec3d target = point_of(*settings.find("camera.target"));
-  const std::vector<Vec3d> positions = positions_of(settings, target);
   CameraViews views;
+  views.set = read_set(settings);
   views.fit = fit_of(settings);
-  for (const std::size_t i : chosen_views(settings, positions.size())) {
-    Camera camera;
-    camera.position = positions[i];
-    camera.target = target;
-    camera.type = find_camera_type(settings.text("camera.type"));
-    span_of(camera) = settings.number(fmt::format("camera.{}", type_of(camera).span_name()));
-    camera.lens_radius_m = settings.number("camera.lens_radius_m");
+  const bool drawn =
+      std::any_of(variable_keys().begin(), variable_keys().end(), [&](const VariableKey& row) {
+        return row.key.starts_with("camera.") && settings.distribution(row.key) != nullptr;
+      });
+  bool complained = drawn || (views.set.kind == CameraSet::Kind::random &&
+                              settings.find("camera.position_m") == nullptr);
+  for (const std::size_t i : chosen_views(settings, view_count(views.set))) {
     views.names.push_back(std::to_string(i));
-    views.cameras.push_back(camera);
-    if (!aim(settings, views.names.back(), views.cameras.back()))
-      break;  // the others would say the same
+    views.cameras.push_back(camera_of(views.set, constants, i));
+    if (complained) continue;  // the others would say the same
+    if (const auto fault = fault_of(views.set, views.cameras.back(), views.names.back())) {
+      settings.complain(fault->key, fault->message);
+      complained = true;
+    }
   }
   return views;
 }

@@ -31,17 +31,6 @@ std::string list_of_names(const std::vector<fs::path>& paths) {
   return list_of(names);
 }
 
-/// Integers where a number is wanted (49) become numbers (49.0), inside points too.
-RecipeValue as_number(const RecipeValue& value) {
-  RecipeValue to = value;
-  if (value.is_number()) to.value = value.number();
-  if (auto* list = std::get_if<RecipeValue::Array>(&to.value)) {
-    for (RecipeValue& element : *list)
-      element = as_number(element);
-  }
-  return to;
-}
-
 std::optional<std::string> own_text(const KeySpec& key, const Recipe& recipe) {
   if (key.name == "dataset.name") return to_toml(recipe.name);
   if (key.name == "models.files") return list_of_names(recipe.models);
@@ -77,7 +66,8 @@ std::vector<std::pair<std::string, std::string>> canonical_settings(const Settin
     if (const auto text = own_text(key, recipe)) {
       lines.emplace_back(key.name, *text);
     } else if (value != nullptr && key.type != KeyType::path && settings.applies(key)) {
-      lines.emplace_back(key.name, to_toml(is_number_type(key.type) ? as_number(*value) : *value));
+      lines.emplace_back(key.name,
+                         to_toml(is_number_type(key.type) ? with_numbers(*value) : *value));
     }
   }
   return lines;

@@ -126,6 +126,21 @@ std::span<const Asset> Choice::of_view(std::size_t view) const {
   return std::span(assets_).subspan(number, 1);
 }
 
+bool draws_camera(const Recipe& recipe) {
+  return std::any_of(recipe.drawn.begin(), recipe.drawn.end(),
+                     [](const Drawn& one) { return one.key.starts_with("camera."); });
+}
+
+ImageVariables drawn_for(const Recipe& recipe, const std::string& model, const std::string& view,
+                         int attempts) {
+  ImageVariables image;
+  image.values = recipe.constants;
+  image.attempts = attempts;
+  const DrawnFor of{recipe.seed, model, view, view_number(view), attempts};
+  draw_all(recipe.drawn, of, image.values, image.draws);
+  return image;
+}
+
 std::map<std::string, std::string> other_classes_of(const Recipe& recipe,
                                                     const std::string& model) {
   std::map<std::string, std::string> classes;
@@ -159,6 +174,18 @@ void fit_image(ImageSpec& image, const Recipe& recipe, const Sphere& model) {
   if (!recipe.camera_fit) return;
   image.camera =
       fit_camera(image.camera, *recipe.camera_fit, model, image.engine.width, image.engine.height);
+}
+
+void draw_again(ImageSpec& image, const Recipe& recipe, int attempts) {
+  image.variables = drawn_for(recipe, image.model_name, image.view, attempts);
+  if (draws_camera(recipe))
+    image.camera = camera_of(recipe.camera_set, image.variables->values, view_number(*image.view));
+}
+
+void check_drawn(const ImageSpec& image, const Recipe& recipe) {
+  if (!draws_camera(recipe)) return;
+  if (const auto fault = fault_of(recipe.camera_set, image.camera, *image.view))
+    fail(ErrorKind::recipe, "{}: {} {}", image.id, fault->key, fault->message);
 }
 
 ClassIds class_ids(const Recipe& recipe, const std::set<std::string>& paths) {
@@ -195,6 +222,7 @@ void expand(const Recipe& recipe, const std::function<void(ImageSpec&&)>& visit)
                    [](const auto* a, const auto* b) { return a->name < b->name; });
   ImageSpec image;
   image.engine = recipe.engine;
+  image.variables = ImageVariables{recipe.constants, {}, 0};
   for (const ModelFile* model : models) {
     const std::string& name = model->name;
     const ModelLabel label = splits.of_model(name);
@@ -208,6 +236,7 @@ void expand(const Recipe& recipe, const std::function<void(ImageSpec&&)>& visit)
     for (std::size_t view = 0; view < recipe.cameras.size(); ++view) {
       image.view = views[view];
       image.camera = recipe.cameras[view];
+      if (!recipe.drawn.empty()) draw_again(image, recipe, 0);
       const std::span<const Asset> places = environment_choice.of_view(view);
       for (const Asset& material : material_choice.of_view(view)) {
         image.material_file = material.path;

@@ -30,7 +30,8 @@ constexpr KeyRange between(double least, double most) {
 
 constexpr std::string_view k_ring_sets =
     R"(camera.set = "half-dodecahedron" | "orbit" | "hemisphere")";
-constexpr std::string_view k_counted_sets = R"(camera.set = "orbit" | "hemisphere")";
+constexpr std::string_view k_spiral_sets = R"(camera.set = "orbit" | "hemisphere")";
+constexpr std::string_view k_counted_sets = R"(camera.set = "orbit" | "hemisphere" | "random")";
 constexpr std::string_view k_reinhard = R"(outputs.tone_map = "reinhard02")";
 
 using enum KeyType;
@@ -166,9 +167,14 @@ constexpr std::array k_own_keys = {
             "Which environment an image shows, as materials.assign"},
     KeySpec{"environments.per", images, choice, "", "\"view\"", k_any, R"("view" | "model")",
             R"(environments.assign = "random" | "balanced")", "As materials.per"},
+    KeySpec{"environments.turn_deg", scene, number, "degree", "0", between(-360, 360), "", "",
+            "Turns the environment about the vertical through the origin, its lights too: "
+            "counter-clockwise seen from above"},
+    KeySpec{"environments.gain", film, number, "", "1", k_factor, "", "",
+            "Factor on all light of the environment"},
 
     KeySpec{"camera.set", images, choice, "", "\"half-dodecahedron\"", k_any,
-            R"("half-dodecahedron" | "list" | "orbit" | "hemisphere")", "",
+            R"("half-dodecahedron" | "list" | "orbit" | "hemisphere" | "random")", "",
             "Where the cameras stand: see Cameras in recipes/README.md"},
     KeySpec{"camera.distance_m", scene, number, "m", "0.252", k_distance, "\"fit\"", k_ring_sets,
             "Distance from camera.target. \"fit\": for each model and view the least at which the "
@@ -183,15 +189,22 @@ constexpr std::array k_own_keys = {
         "true: every camera at distance_m; false: the table's vectors times distance_m / 1.732"},
     KeySpec{"camera.positions", images, point_list, "m", "", k_coordinate, "",
             R"(camera.set = "list")", "Camera positions in the world"},
+    KeySpec{"camera.position_m", scene, point, "m", "", k_coordinate, "",
+            R"(camera.set = "random")",
+            "Where the camera stands, from camera.target: a distribution, which must be given with "
+            "set = \"random\""},
     KeySpec{"camera.count", images, integer, "", "12", between(1, 100000), "", k_counted_sets,
             "Number of views"},
     KeySpec{"camera.elevation_deg", scene, number, "degree", "30", between(-90, 90), "",
             R"(camera.set = "orbit")",
             "Height of the circle above the horizon, seen from the target"},
     KeySpec{"camera.azimuth_deg", scene, number, "degree", "0", between(-360, 360), "",
-            k_counted_sets, "Azimuth of view 0, counter-clockwise from +X seen from above"},
+            k_spiral_sets, "Azimuth of view 0, counter-clockwise from +X seen from above"},
     KeySpec{"camera.target", scene, point, "m", "[0, 0, 0]", k_coordinate, "", "",
             "The point every camera looks at"},
+    KeySpec{"camera.roll_deg", scene, number, "degree", "0", between(-360, 360), "", "",
+            "Turns the camera about its viewing axis: clockwise, seen from behind it, so that the "
+            "picture turns counter-clockwise"},
     KeySpec{"camera.views", images, integer_list, "", "[]", k_any, "", "",
             "Use only these views of the set, by number from 0; the names stay. []: all"},
     KeySpec{"camera.type", scene, choice, "", "", k_any, "", "", ""},  // and a span: camera_keys

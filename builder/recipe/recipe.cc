@@ -187,7 +187,10 @@ Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrid
   recipe.normalise = read_normalise(settings);
   read_classes(settings, recipe);
   read_assignments(settings, recipe);
-  CameraViews views = make_cameras(settings);
+  recipe.constants = constants_of(settings);
+  recipe.drawn = drawn_of(settings);
+  CameraViews views = make_cameras(settings, recipe.constants);
+  recipe.camera_set = std::move(views.set);
   recipe.cameras = std::move(views.cameras);
   recipe.view_names = std::move(views.names);
   recipe.camera_fit = views.fit;

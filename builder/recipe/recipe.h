@@ -2,7 +2,9 @@
 #pragma once
 
 #include "builder/recipe/camera_fit.h"
+#include "builder/recipe/camera_sets.h"
 #include "builder/recipe/shared.h"
+#include "builder/recipe/variables.h"
 #include "manifests/classification.h"
 #include "tracer/render/plane_file.h"
 #include "tracer/render/render.h"
@@ -114,7 +116,12 @@ struct Recipe {
   ChoosePer materials_per = ChoosePer::model;
   Assign assign_environments = Assign::cycle;
   ChoosePer environments_per = ChoosePer::view;
-  std::vector<Camera> cameras;          ///< one a view; at a distance of 1 m with camera_fit
+  /// One a view; at a distance of 1 m with camera_fit. Not those of images where the recipe draws
+  /// them.
+  std::vector<Camera> cameras;
+  CameraSet camera_set;
+  Variables constants;                  ///< of what is not drawn
+  std::vector<Drawn> drawn;             ///< by key
   std::optional<CameraFit> camera_fit;  ///< each is moved to where its image's model just fits
   std::vector<std::string> view_names;  ///< "0", "1", ...; as long as cameras
   EngineSettings engine;
@@ -137,6 +144,13 @@ Recipe read_recipe(const std::filesystem::path& file, const std::vector<std::str
 /// is the same wherever the assets lie.
 std::string canonical_recipe(const Recipe& recipe);
 
+/// The numbers of an image that another one may have otherwise.
+struct ImageVariables {
+  Variables values;
+  DrawnValues draws;  ///< of Recipe::drawn, in its order
+  int attempts = 0;   ///< draws that were rejected before these
+};
+
 /// One image to make. A pure function of the recipe.
 struct ImageSpec {
   std::string id;  ///< "human.ply/0": the path of the picture under images/, less its ending
@@ -146,6 +160,7 @@ struct ImageSpec {
   Shared<std::string> environment_name;  ///< folder name
   Shared<std::string> view;
   Camera camera;
+  Shared<ImageVariables> variables;
   EngineSettings engine;              ///< with this image's own seed, below 2^53
   Shared<std::string> class_path;     ///< "vehicle/car", "" where unclassified
   Shared<std::string> split;          ///< "train", "test" or "" where there is none
@@ -159,7 +174,8 @@ struct ImageSpec {
 /// highest hash, so adding a material changes only the images that then show it. "cycle": view k
 /// gets candidate (k + hash(seed, model)) mod n, so all appear equally often. "balanced": as
 /// choose_balanced says, for each class of each split (of classes alone, where it is no model that is split);
-/// a model added changes some of its class and split.
+/// a model added changes some of its class and split. Distributions are drawn by (seed, model, view, key): images of
+/// one view in several materials and environments share them.
 ///
 /// The id is model/view, and -material and -environment behind it for each that is assigned "all".
 /// Throws Error(recipe) where two images would have one id, or an id's last part a dot.
@@ -175,6 +191,12 @@ std::size_t image_count(const Recipe& recipe);
 using ClassIds = std::map<std::string, std::uint64_t, std::less<>>;
 /// Of classes.ids, in its order, and then of the paths that it does not name; "" is no class.
 ClassIds class_ids(const Recipe& recipe, const std::set<std::string>& paths);
+
+/// Draws again what the recipe draws, for an image of which so many draws were rejected, and its
+/// camera with it.
+void draw_again(ImageSpec& image, const Recipe& recipe, int attempts);
+/// Throws Error(recipe) where the camera that was drawn for an image sees nothing.
+void check_drawn(const ImageSpec& image, const Recipe& recipe);
 
 /// Moves an image's camera to where its model fits, which is that sphere, where the recipe wants
 /// that; else nothing. Throws what `fit_camera` throws.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/recipe/keys.h"
 #include "builder/recipe/planes.h"
+#include "builder/recipe/variables.h"
 #include "tracer/scene/mesh_formats.h"
 
 #include <fmt/format.h>
@@ -73,6 +74,7 @@ std::string type_cell(const KeySpec& key) {
   std::string cell(key.type == KeyType::choice ? literals(key.choices) : type_text(key.type));
   if (const std::string range = key.range.text(); !range.empty()) cell += " " + range;
   if (key.type != KeyType::choice && !key.choices.empty()) cell += " or " + literals(key.choices);
+  if (find_variable(key.name) != nullptr) cell += " or a distribution";
   return cell;
 }
 
@@ -80,6 +82,22 @@ std::string default_cell(const KeySpec& key) {
   if (key.default_value.empty()) return "none";
   if (key.has_default()) return "`" + std::string(key.default_value) + "`";
   return std::string(key.default_value.substr(1, key.default_value.size() - 2));
+}
+
+std::string distribution_reference() {
+  std::string text =
+      "| word | of | wants | beside it | what it gives |\n| --- | --- | --- | --- | --- |\n";
+  for (const DistributionWord& word : distribution_words()) {
+    std::string kinds, beside;
+    for (const DrawnKind kind : word.kinds)
+      kinds += fmt::format("{}{}", kinds.empty() ? "" : ", ", name_of(kind));
+    for (const std::string_view name : word.beside)
+      beside += fmt::format("{}`{}`{}", beside.empty() ? "" : ", ", name.substr(0, name.find('!')),
+                            name.ends_with('!') ? " (must)" : "");
+    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", word.name, kinds, shape_text(word.shape),
+                        beside, word.help);
+  }
+  return text;
 }
 
 std::string help_cell(const KeySpec& key) {
@@ -122,7 +140,8 @@ std::string recipe_reference() {
                         type_cell(key), key.unit, default_cell(key), help_cell(key),
                         moves_text(key.moves));
   }
-  return text + "\n### Mesh formats\n\n" + mesh_format_reference() + "\n### Planes\n\n" +
+  return text + "\n### Words of distributions\n\n" + distribution_reference() +
+         "\n### Mesh formats\n\n" + mesh_format_reference() + "\n### Planes\n\n" +
          plane_reference();
 }
 

@@ -3,6 +3,7 @@
 
 #include "builder/recipe/keys.h"
 #include "builder/recipe/value.h"
+#include "builder/recipe/variables.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -84,11 +85,92 @@ json literals_of(const KeySpec& key) {
   return literals;
 }
 
+json numbers(std::size_t count) {
+  json list = list_of({{"type", "number"}});
+  list["minItems"] = list["maxItems"] = count;
+  return list;
+}
+
+json rows(std::size_t count, std::size_t columns) {
+  json list = list_of(numbers(columns));
+  list["minItems"] = list["maxItems"] = count;
+  return list;
+}
+
+/// Of candidates: a number or a list of some.
+json constants(DrawnKind kind) {
+  if (kind == DrawnKind::integer) return {{"type", "integer"}};
+  return width_of(kind) == 1 ? json{{"type", "number"}} : numbers(width_of(kind));
+}
+
+json schema_of(const DistributionWord& word, DrawnKind kind) {
+  const json radius{{"type", "number"}, {"minimum", 0}};
+  switch (word.shape) {
+    case WordShape::range:
+    case WordShape::parameters:
+      return numbers(2);
+    case WordShape::candidates: {
+      json list = list_of(constants(kind));
+      if (!word.by_view)
+        list["items"] = {
+            {"anyOf", {list["items"], {{"$ref", fmt::format("#/$defs/{}", name_of(kind))}}}}};
+      list["minItems"] = 1;
+      return list;
+    }
+    case WordShape::radius:
+      return radius;
+    case WordShape::radii:
+      return {{"anyOf", {radius, numbers(2)}}};
+    case WordShape::box:
+      return rows(2, 3);
+    case WordShape::hsv:
+      return rows(3, 2);
+    case WordShape::turn:
+      return {{"enum", {"up", "any"}}};
+  }
+  return {};
+}
+
+json beside_schema(std::string_view name) {
+  if (name == "per") return {{"enum", {"view", "model", "dataset"}}};
+  if (name == "weights") return list_of({{"type", "number"}, {"minimum", 0}});
+  return numbers(name == "at" ? 3 : 2);
+}
+
+/// The distributions that a key of this kind takes.
+json distributions_of(DrawnKind kind) {
+  json words = json::array();
+  for (const DistributionWord& word : distribution_words()) {
+    if (!may_draw(word, kind)) continue;
+    json one{{"type", "object"},
+             {"description", word.help},
+             {"properties", {{word.name, schema_of(word, kind)}}},
+             {"required", {word.name}},
+             {"additionalProperties", false}};
+    for (std::string_view name : word.beside) {
+      if (name.ends_with('!')) {
+        name.remove_suffix(1);
+        one["required"].push_back(name);
+      }
+      one["properties"][std::string(name)] = beside_schema(name);
+    }
+    words.push_back(std::move(one));
+  }
+  return {{"anyOf", words}};
+}
+
 json schema_of(const KeySpec& key) {
   json schema = type_schema(key);
-  if (const json literals = literals_of(key); !literals.empty()) {
-    const json one{{"enum", literals}};
-    schema = schema.is_null() ? one : json{{"anyOf", {schema, one}}};
+  json others = json::array();
+  if (const json literals = literals_of(key); !literals.empty())
+    others.push_back({{"enum", literals}});
+  if (const VariableKey* row = find_variable(key.name))
+    others.push_back({{"$ref", fmt::format("#/$defs/{}", name_of(row->kind))}});
+  if (!others.empty() && schema.is_null() && others.size() == 1) {
+    schema = others.front();
+  } else if (!others.empty()) {
+    if (!schema.is_null()) others.insert(others.begin(), schema);
+    schema = {{"anyOf", others}};
   }
   std::string text = help_of(key);
   if (!key.unit.empty()) text += fmt::format(" ({})", key.unit);
@@ -126,6 +208,8 @@ nlohmann::json recipe_schema() {
     json& section = section_of(root, name);
     section["properties"][std::string(name)] = schema_of(key);
   }
+  for (const VariableKey& row : variable_keys())
+    root["$defs"][std::string(name_of(row.kind))] = distributions_of(row.kind);
   return root;
 }
 

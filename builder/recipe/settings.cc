@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/recipe/settings.h"
 
+#include "builder/recipe/variables.h"
 #include "tracer/base/nearest.h"
 
 #include <fmt/format.h>
@@ -160,10 +161,19 @@ void Settings::check(const std::string& name, RecipeValue value) {
     complain_of_unknown(name, value);
     return;
   }
+  if (const VariableKey* row = find_variable(name); row != nullptr && is_distribution(value)) {
+    auto distribution = read_distribution(
+        value, row->kind, key->range,
+        [&](const RecipeValue& at, const std::string& message) { complain(at, name, message); });
+    if (distribution) distributions_.emplace(name, *std::move(distribution));
+    (distribution ? values_ : wrong_).emplace(name, std::move(value));
+    return;
+  }
   if (const RecipeValue* unfit = unfit_part(*key, value)) {
     complain(*unfit, name,
-             fmt::format("must be {}, got {}{}", wanted_text(*key), found_text(*unfit),
-                         choice_meant(*key, *unfit)));
+             fmt::format("must be {}, got {}{}{}", wanted_text(*key), found_text(*unfit),
+                         choice_meant(*key, *unfit),
+                         is_distribution(value) ? "; it takes no distribution" : ""));
     wrong_.emplace(name, std::move(value));
     return;
   }
@@ -244,7 +254,14 @@ const RecipeValue* Settings::find(std::string_view key) const {
   return at == defaults_.end() ? nullptr : &at->second;
 }
 
+const Distribution* Settings::distribution(std::string_view key) const {
+  const auto at = distributions_.find(key);
+  return at == distributions_.end() ? nullptr : &at->second;
+}
+
 void Settings::unset(std::string_view key) {
+  if (const auto at = distributions_.find(key); at != distributions_.end())
+    distributions_.erase(at);
   if (const auto at = values_.find(key); at != values_.end()) values_.erase(at);
   if (const auto at = wrong_.find(key); at != wrong_.end()) wrong_.erase(at);
 }

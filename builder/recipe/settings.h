@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "builder/recipe/distribution.h"
 #include "builder/recipe/keys.h"
 #include "builder/recipe/value.h"
 #include "tracer/base/error.h"
@@ -31,6 +32,8 @@ class Settings {
   bool given_by_set(std::string_view key) const;
   /// The value given or the default; nullptr where there is neither.
   const RecipeValue* find(std::string_view key) const;
+  /// Where the value given is one; nullptr where not.
+  const Distribution* distribution(std::string_view key) const;
   /// Whether a misspelt key was most likely meant for this one.
   bool misspelt(std::string_view key) const { return meant_.contains(key); }
   /// Whether a key was found to have no effect with the value that this one has.
@@ -40,7 +43,7 @@ class Settings {
   /// Whether the key's only_with holds, so that it has an effect.
   bool applies(const KeySpec& key) const;
 
-  // For keys that have a default. Numbers are finite and in range, choices one of the allowed.
+  // For keys that have a default and no distribution. Numbers are finite and in range, choices one of the allowed.
   const std::string& text(std::string_view key) const;
   double number(std::string_view key) const;
   int integer(std::string_view key) const;
@@ -73,6 +76,7 @@ class Settings {
   std::string file_;
   std::filesystem::path folder_;
   std::map<std::string, RecipeValue, std::less<>> values_, wrong_;
+  std::map<std::string, Distribution, std::less<>> distributions_;  ///< of some of values_
   /// Keys that a misspelt one was most likely meant for: what is amiss for want of them is no
   /// finding of its own.
   std::set<std::string, std::less<>> meant_;

@@ -62,7 +62,7 @@ class Converter {
     for (const auto& [key, node] : from) {
       RecipeValue converted = value(node);
       // A finding about a whole section points at its name.
-      if (node.is_table()) converted.place = place(key.source());
+      if (node.is_table() && !node.as_table()->is_inline()) converted.place = place(key.source());
       to.emplace(std::string(key.str()), std::move(converted));
     }
     return to;
@@ -150,6 +150,13 @@ std::string_view boolean_meant(std::string_view word) {
   return is_one_of({"false", "no", "off"}) ? "false" : "";
 }
 
+/// Whether a key may stand without quotes.
+bool is_bare(std::string_view key) {
+  return !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+  });
+}
+
 std::string_view line_of(std::string_view text, std::size_t number) {
   for (; number > 1 && !text.empty(); --number)
     text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
@@ -218,12 +225,24 @@ std::string to_toml(const RecipeValue& value) {
   if (const auto* table = value.table()) {
     std::string list;
     for (const auto& [key, member] : *table)
-      list += (list.empty() ? "" : ", ") + key + " = " + to_toml(member);
+      list += (list.empty() ? "" : ", ") + (is_bare(key) ? key : to_toml(key)) + " = " +
+              to_toml(member);
     return "{" + list + "}";
   }
   std::string digits = fmt::format("{}", value.number());
   if (digits.find_first_of(".en") == digits.npos) digits += ".0";
   return digits;
+}
+
+RecipeValue with_numbers(RecipeValue value) {
+  if (value.is_number()) value.value = value.number();
+  if (auto* list = std::get_if<RecipeValue::Array>(&value.value))
+    for (RecipeValue& element : *list)
+      element = with_numbers(std::move(element));
+  if (auto* table = value.table())
+    for (auto& [key, member] : *table)
+      member = with_numbers(std::move(member));
+  return value;
 }
 
 RecipeValue::Table parse_recipe_text(std::string_view bytes, const std::string& file,

@@ -37,6 +37,9 @@ struct RecipeValue {
 std::string to_toml(const RecipeValue& value);
 std::string to_toml(std::string_view text);
 
+/// Integers as numbers: 49 becomes 49.0, inside lists and tables too.
+RecipeValue with_numbers(RecipeValue value);
+
 /// Reads a TOML document, with any line ends and with or without a byte order mark. `file` stands
 /// in the places. A syntax error (or a date, which no key takes) is a finding, and then the table
 /// is empty.

@@ -44,6 +44,8 @@ nlohmann::json sample_fields(const ExportInput& input, const ExportImage& image)
   if (record.intrinsics) fields["intrinsics"] = rows_of(*record.intrinsics, 3);
   if (record.metres_per_pixel) fields["metres_per_pixel"] = *record.metres_per_pixel;
   if (record.relative_error) fields["relative_error"] = *record.relative_error;
+  if (!input.dataset.draws.empty())
+    fields["draws"] = record.draws.empty() ? nlohmann::json() : to_json_value(record.draws);
   if (!input.has("mask")) return fields;
   const auto box = tight_box(read_mask(input, image));
   fields["bbox"] = box ? nlohmann::json(*box) : nlohmann::json();

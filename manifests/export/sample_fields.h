@@ -13,7 +13,8 @@ bool has_folds(const DatasetRecord& dataset);
 /// What formats with a line of JSON for each image tell of it, the same fields of the same types for
 /// every image: id, split, label (null without a class), class_path, model, material, environment,
 /// view, seed, spp, width, height, camera_model, intrinsics (null where rays are parallel),
-/// metres_per_pixel (null elsewhere), camera_to_world, relative_error (null where nobody knows it), and
+/// metres_per_pixel (null elsewhere), camera_to_world, relative_error (null where nobody knows it), draws
+/// (by key, of a dataset that has some), and
 /// where the dataset has masks bbox, [x, y, width, height] of what is seen in whole pixels, null where
 /// nothing is.
 nlohmann::json sample_fields(const ExportInput& input, const ExportImage& image);

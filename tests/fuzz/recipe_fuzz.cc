@@ -17,11 +17,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       ds::parse_recipe_text(text.substr(first_line), "fuzz.toml", diagnostics);
   ds::apply_override(text.substr(0, first_line), tree, diagnostics);
   ds::Settings settings("fuzz.toml", std::move(tree), diagnostics);
-  const ds::CameraViews views = ds::make_cameras(settings);
+  const ds::CameraViews views = ds::make_cameras(settings, ds::constants_of(settings));
   DS_ASSERT(views.cameras.size() == views.names.size());
   for (const ds::KeySpec& key : ds::recipe_keys()) {
     const ds::RecipeValue* value = settings.find(key.name);
-    DS_ASSERT(value == nullptr || ds::fits(key, *value));
+    DS_ASSERT(value == nullptr || settings.distribution(key.name) != nullptr ||
+              ds::fits(key, *value));
   }
   return 0;
 }

@@ -18,6 +18,7 @@ void expect_same(const LineGlance& a, const LineGlance& b) {
   EXPECT_EQ(a.pixel_counts, b.pixel_counts);
   EXPECT_EQ(a.class_id, b.class_id);
   EXPECT_EQ(a.other_classes, b.other_classes);
+  EXPECT_EQ(a.draws, b.draws);
   EXPECT_EQ(a.render_key, b.render_key);
   EXPECT_EQ(a.files_key, b.files_key);
   ASSERT_EQ(a.files.size(), b.files.size());
@@ -53,6 +54,7 @@ ImageRecord record(const std::string& model) {
   image.pixel_counts.left = image.pixel_counts.below = 2;
   image.class_id = 3;
   image.other_classes = {{"coarse", "thing},\"environment\":"}, {"kind", ""}};
+  image.draws = {{"camera.target", {{0.5, 0.25, 1}}}, {"n", {{3}, true}}};
   image.pose.emplace();
   return image;
 }
@@ -64,6 +66,16 @@ TEST(ManifestGlance, SeesWhatTheLineSays) {
     const auto glance = glance_at(line);
     ASSERT_TRUE(glance) << model;
     expect_same(*glance, glance_at(image));
+    EXPECT_EQ(glance->draws, R"({"camera.target":[0.5,0.25,1.0],"n":3})");
+    ImageRecord drawn = image;
+    drawn.other_classes.clear();
+    const std::string classless = to_json_line(drawn);
+    ASSERT_TRUE(glance_at(classless));
+    expect_same(*glance_at(classless), glance_at(drawn));
+    image.draws.clear();
+    const std::string constant = to_json_line(image);
+    ASSERT_TRUE(glance_at(constant));
+    expect_same(*glance_at(constant), glance_at(image));
     image.files.clear();
     image.pixel_counts = {};
     image.class_path = image.split = "";

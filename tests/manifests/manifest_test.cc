@@ -56,6 +56,7 @@ class ManifestTest : public testing::Test {
       image.pixel_counts = {30'000, 17, 4000, {}};
       image.class_id = 7;
       image.other_classes = {{"coarse", "vessel"}};
+      image.draws = {{"camera.fov_deg", {{0.1 + 0.2}}}, {"outputs.quality", {{90}, true}}};
       image.pose = {{0, 2, 0, 0.1 + 0.2, -2, 0, 0, 4, 0, 0, 2, 5, 0, 0, 0, 1},
                     {{1, 2, 3}, {4, 5, 6}}};
       image.film.samples = 256 * 128 * 64;
@@ -76,6 +77,8 @@ class ManifestTest : public testing::Test {
     dataset_.seed = 7;
     dataset_.class_paths = {"vessel", "vessel/mug"};
     dataset_.counts = {{"images", 2}, {"models", 1}};
+    dataset_.draws["camera.fov_deg"] = {"{uniform = [0.0, 1.0]}", 2, {0.25}, {0.5}, {0.1 + 0.2}};
+    dataset_.draws["camera.target"] = {"{ball = 1.0}", 0, {}, {}, {}};
     dataset_.licences = {
         {"CC0-1.0", "CC0 1.0 Universal\n", {"environments/studio", "models/mug.ply"}},
         {"", "all mine", {"materials/red-plastic.mat"}}};
@@ -110,6 +113,7 @@ TEST_F(ManifestTest, ReadsBackWhatWasWritten) {
     EXPECT_EQ(images[i].pixel_counts, images_[i].pixel_counts);
     EXPECT_EQ(images[i].class_id, 7U);
     EXPECT_EQ(images[i].other_classes, images_[i].other_classes);
+    EXPECT_EQ(images[i].draws, images_[i].draws);
     EXPECT_EQ(images[i].pose, images_[i].pose);
     EXPECT_EQ(images[i].intrinsics, images_[i].intrinsics);
     EXPECT_EQ(images[i].camera_to_world, images_[i].camera_to_world);

@@ -171,7 +171,7 @@ TEST_F(CameraSetsTest, ReportWhatCannotBeSeen) {
             "r.toml: camera.focus_distance_m must be given with camera.focus = \"distance\"");
   EXPECT_EQ(folder_.findings("camera.set = \"dodecahedron\"\ncamera.count = 3"),
             "r.toml:4:14: camera.set must be \"half-dodecahedron\" or \"list\" or \"orbit\" or "
-            "\"hemisphere\", got "
+            "\"hemisphere\" or \"random\", got "
             "\"dodecahedron\"");
 }
 

@@ -204,7 +204,7 @@ TEST_F(RecipeReadTest, RefusesAKeyThatHasNoEffect) {
   EXPECT_EQ(folder_.findings("camera.count = 8"),
             "r.toml:4:16: camera.count has no effect with camera.set = \"half-dodecahedron\", only "
             "with camera.set = "
-            "\"orbit\" | \"hemisphere\"");
+            "\"orbit\" | \"hemisphere\" | \"random\"");
   // But not where --set has just chosen something else.
   const Recipe recipe =
       folder_.read("camera.set = \"orbit\"\ncamera.count = 8", {"camera.set=half-dodecahedron"});
@@ -212,7 +212,7 @@ TEST_F(RecipeReadTest, RefusesAKeyThatHasNoEffect) {
   EXPECT_EQ(folder_.findings("", {"camera.count=8"}),
             "--set camera.count: has no effect with camera.set = \"half-dodecahedron\", only with "
             "camera.set = "
-            "\"orbit\" | \"hemisphere\"");
+            "\"orbit\" | \"hemisphere\" | \"random\"");
 }
 
 TEST_F(RecipeReadTest, TakesPathsFromTheRecipesFolderAndFromTheCurrentOneInSet) {

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// What distributions make stale, and what the manifest says of them.
+#include "builder/plan/dataset_manifest.h"
+#include "tests/builder/tiny_dataset.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace ds {
+namespace {
+
+class DrawsTest : public TinyDataset {
+ protected:
+  std::map<std::string, Hash128> render_keys(std::vector<std::string> overrides) {
+    request.overrides = std::move(overrides);
+    std::map<std::string, Hash128> keys;
+    for (const PlannedImage& image : plan().images) {
+      EXPECT_FALSE(image.error) << image.error->what();
+      keys[image.spec.id] = image.keys.render;
+    }
+    return keys;
+  }
+};
+
+const char* const k_drawn_keys[] = {
+    "camera.fov_deg",       "camera.distance_m",     "camera.roll_deg",  "camera.azimuth_deg",
+    "camera.elevation_deg", "environments.turn_deg", "environments.gain"};
+
+// Only the value counts, not what it was drawn from.
+TEST_F(DrawsTest, ADistributionOfOneValueHasThatValuesKeys) {
+  const auto none = render_keys({});
+  for (const std::string key : k_drawn_keys) {
+    const auto constant = render_keys({key + "=2"});
+    EXPECT_NE(constant, none) << key;
+    EXPECT_EQ(render_keys({key + "={uniform=[2,2]}"}), constant) << key;
+    EXPECT_EQ(render_keys({key + "={choice=[2],per=\"model\"}"}), constant) << key;
+    EXPECT_NE(render_keys({key + "={uniform=[2,3]}"}), constant) << key;
+  }
+  EXPECT_EQ(render_keys({"environments.turn_deg={uniform=[0,0]}", "environments.gain={cycle=[1]}"}),
+            none);
+}
+
+TEST_F(DrawsTest, AnotherDistributionWithTheSameValuesMakesNothingStale) {
+  request.overrides = {"environments.gain={choice=[1,2]}"};
+  build();
+  EXPECT_TRUE(stale().empty());
+  request.overrides = {"environments.gain={choice=[2,1],weights=[3,3]}"};
+  const Plan after = plan();
+  for (const PlannedImage& image : after.images)
+    EXPECT_FALSE(image.stale()) << image.spec.id;
+  EXPECT_THAT(after.manifest.behind, testing::ElementsAre("settings: environments.gain"));
+  // A value that is likelier now takes images over, and the others stay.
+  request.overrides = {"environments.gain={choice=[1,2],weights=[1,9]}"};
+  for (const PlannedImage& image : plan().images)
+    if (image.stale()) {
+      EXPECT_THAT(image.reasons, testing::ElementsAre("environment changed: gain: added 2"));
+      EXPECT_EQ(image.spec.variables->values.environment_gain, 2);
+    }
+}
+
+TEST_F(DrawsTest, TheManifestSaysWhatWasDrawn) {
+  request.overrides = {"camera.fov_deg={uniform=[40,60]}", "camera.target={ball=0.01}"};
+  build();
+  const DatasetRecord dataset = read_dataset_manifest(output());
+  ASSERT_EQ(dataset.draws.size(), 2U);
+  const DrawSummary& fov = dataset.draws.at("camera.fov_deg");
+  EXPECT_EQ(fov.distribution, "{uniform = [40.0, 60.0]}");
+  EXPECT_EQ(fov.count, k_images);
+  double sum = 0, least = 180, most = 0;
+  for (const ImageRecord& image : read_images_manifest(output())) {
+    ASSERT_EQ(image.draws.size(), 2U);
+    EXPECT_EQ(image.draws.at("camera.target").values.size(), 3U);
+    const double value = image.draws.at("camera.fov_deg").values.at(0);
+    EXPECT_EQ(image.intrinsics, camera_intrinsics(value, 32, 32));
+    sum += value;
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  EXPECT_EQ(fov.least, std::vector{least});
+  EXPECT_EQ(fov.most, std::vector{most});
+  EXPECT_NEAR(fov.mean.at(0), sum / k_images, 1e-13);
+  EXPECT_EQ(build().built, 0U);
+}
+
+// A constant that becomes a distribution of it: no picture, but a line that says so.
+TEST_F(DrawsTest, LinesFollowTheRecipesDistributions) {
+  request.overrides = {"camera.fov_deg=50"};
+  build();
+  EXPECT_TRUE(read_images_manifest(output())[0].draws.empty());
+  request.overrides = {"camera.fov_deg={uniform=[50,50]}"};
+  build();
+  EXPECT_TRUE(calls.traced.empty());
+  EXPECT_EQ(read_images_manifest(output())[0].draws.at("camera.fov_deg").values, std::vector{50.0});
+  request.overrides = {"camera.fov_deg=50"};
+  build();
+  EXPECT_TRUE(read_images_manifest(output())[0].draws.empty());
+}
+
+TEST_F(DrawsTest, ACameraThatSeesNothingIsAnErrorOfItsImageAlone) {
+  request.overrides = {"camera.set=\"random\"", "camera.count=8",
+                       "camera.position_m={choice=[[0,0,0],[0.4,0,0.1]]}"};
+  std::size_t failed = 0, made = 0;
+  for (const PlannedImage& image : plan().images) {
+    ++(image.error ? failed : made);
+    if (image.error) {
+      EXPECT_EQ(std::string(image.error->what()),
+                image.spec.id + ": camera.target must not be where a camera stands, got view " +
+                    *image.spec.view + " there");
+    }
+  }
+  EXPECT_GT(failed, 0U);
+  EXPECT_GT(made, 0U);
+}
+
+}  // namespace
+}  // namespace ds

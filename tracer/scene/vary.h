@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tracer/scene/scene.h"
+
+namespace ds {
+
+/// What of an environment may differ from picture to picture.
+struct EnvironmentChange {
+  double turn_deg = 0;  ///< about the z axis, counter-clockwise seen from above; |turn_deg| <= 1e6
+  double gain = 1;      ///< factor on all its light, > 0
+
+  bool operator==(const EnvironmentChange&) const = default;
+};
+
+/// The environment turned, its meshes, lights and what its textures show in the world's coordinates
+/// alike, and brighter or darker: lights and what emits. The same bits on every machine; those of
+/// `scene` where nothing changes.
+Scene changed(Scene scene, const EnvironmentChange& change);
+
+/// Whether a gain makes another program of it: of a texture that emits, a product.
+bool gain_changes_program(const Scene& scene);
+
+}  // namespace ds
