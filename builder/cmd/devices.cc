@@ -10,6 +10,7 @@ namespace ds {
 
 int run_devices(const Arguments& arguments) {
   const std::vector<DeviceInfo> devices = list_devices();
+  const std::size_t preferred = devices.empty() ? 0 : preferred_device(devices);
   nlohmann::json array = nlohmann::json::array();
   for (std::size_t i = 0; i < devices.size(); ++i) {
     const DeviceInfo& device = devices[i];
@@ -19,13 +20,17 @@ int run_devices(const Arguments& arguments) {
                      {"version", device.version},
                      {"driver", device.driver},
                      {"cpu", device.is_cpu},
+                     {"strict", device.is_strict},
+                     {"default", i == preferred},
                      {"compute_units", device.compute_units},
                      {"global_memory_bytes", device.global_memory_bytes}});
     if (!arguments.json)
-      say(Stream::result, "{}: {} ({}, {}, driver {}), {} compute units, {:.1f} GiB\n", i,
+      say(Stream::result, "{}: {} ({}, {}, driver {}), {} compute units, {:.1f} GiB{}{}\n", i,
           device.name, device.platform, device.is_cpu ? "CPU" : "GPU", device.driver,
           device.compute_units,
-          static_cast<double>(device.global_memory_bytes) / (1024.0 * 1024.0 * 1024.0));
+          static_cast<double>(device.global_memory_bytes) / (1024.0 * 1024.0 * 1024.0),
+          device.is_strict ? "" : "; rounds as it likes: of no use here",
+          devices.size() > 1 && i == preferred ? "; taken where none is named" : "");
   }
   if (arguments.json)
     print_json({{"devices", array}});

@@ -167,10 +167,12 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
           ->type_name("DIR");
       return;
     case Option::device:
-      verb.add_option("--device", to.device,
-                      "OpenCL device, as dsbuild devices lists them: its number or part of its "
-                      "name")
-          ->type_name("NAME");
+      verb.add_option(
+              "--device", to.device,
+              "OpenCL device, as dsbuild devices lists them: its number, cpu, gpu or part of "
+              "its name [the first GPU, else the CPU]")
+          ->type_name("NAME")
+          ->envname("DSBUILD_DEVICE");
       return;
     case Option::json:
       verb.add_flag("--json", to.json,

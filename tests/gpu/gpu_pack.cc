@@ -54,6 +54,7 @@ class Wanted {
 
 TracerOptions as_on_a_gpu() {
   TracerOptions options = pictures::tracer_options();
+  options.device = "cpu";
   options.lanes = options.item_pixels = 1;
   options.work_group_size = static_cast<int>(k_group);
   return options;
@@ -91,7 +92,7 @@ void record(Tracer& tracer, const gpu::Case& one) {
 class RayTracer {
  public:
   explicit RayTracer(const std::vector<Corners>& triangles)
-      : device_(""),
+      : device_("cpu"),
         program_(device_.build(rays_program_text(),
                                fmt::format("{} -DDS_LANES=1", k_strict_options), DS_TEST_PROGRAMS)),
         bvh_(build_bvh(triangles)) {}

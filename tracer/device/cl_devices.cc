@@ -40,6 +40,10 @@ DeviceInfo describe(cl_platform_id platform, cl_device_id device) {
   info.version = device_text(device, CL_DEVICE_VERSION);
   info.driver = device_text(device, CL_DRIVER_VERSION);
   info.is_cpu = (device_value<cl_device_type>(device, CL_DEVICE_TYPE) & CL_DEVICE_TYPE_CPU) != 0;
+  constexpr cl_device_fp_config strict = CL_FP_DENORM | CL_FP_INF_NAN | CL_FP_ROUND_TO_NEAREST |
+                                         CL_FP_FMA | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT;
+  const auto floats = device_value<cl_device_fp_config>(device, CL_DEVICE_SINGLE_FP_CONFIG);
+  info.is_strict = (floats & strict) == strict;
   info.float_lanes = device_value<cl_uint>(device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT);
   info.compute_units = device_value<cl_uint>(device, CL_DEVICE_MAX_COMPUTE_UNITS);
   info.global_memory_bytes = device_value<cl_ulong>(device, CL_DEVICE_GLOBAL_MEM_SIZE);
@@ -111,7 +115,23 @@ std::string meant_word(const std::string& selector, const std::vector<FoundDevic
   return did_you_mean(selector, known);
 }
 
+std::vector<DeviceInfo> infos(const std::vector<FoundDevice>& devices) {
+  std::vector<DeviceInfo> result;
+  for (const FoundDevice& device : devices)
+    result.push_back(device.info);
+  return result;
+}
+
 }  // namespace
+
+std::size_t preferred_device(std::span<const DeviceInfo> devices) {
+  const auto gpu = std::find_if(devices.begin(), devices.end(),
+                                [](const DeviceInfo& d) { return !d.is_cpu && d.is_strict; });
+  if (gpu != devices.end()) return static_cast<std::size_t>(gpu - devices.begin());
+  const auto cpu =
+      std::find_if(devices.begin(), devices.end(), [](const DeviceInfo& d) { return d.is_cpu; });
+  return cpu != devices.end() ? static_cast<std::size_t>(cpu - devices.begin()) : 0;
+}
 
 FoundDevice select_device(const std::string& selector) {
   const std::vector<FoundDevice> devices = find_devices();
@@ -119,10 +139,14 @@ FoundDevice select_device(const std::string& selector) {
     fail(
         ErrorKind::device,
         "no OpenCL device found: install a driver, such as pocl-opencl-icd for this machine's CPU");
-  if (selector.empty()) {
-    const auto cpu = std::find_if(devices.begin(), devices.end(),
-                                  [](const FoundDevice& d) { return d.info.is_cpu; });
-    return cpu != devices.end() ? *cpu : devices.front();
+  if (selector.empty()) return devices[preferred_device(infos(devices))];
+  if (const std::string word = lower(selector); word == "cpu" || word == "gpu") {
+    const auto found = std::find_if(devices.begin(), devices.end(), [&](const FoundDevice& device) {
+      return device.info.is_cpu == (word == "cpu");
+    });
+    if (found != devices.end()) return *found;
+    fail(ErrorKind::usage, "--device: there is no {} among the OpenCL devices; there {} {}",
+         word == "cpu" ? "CPU" : "GPU", devices.size() == 1 ? "is" : "are", listing(devices));
   }
   if (const std::optional<std::size_t> index = whole_number(selector)) {
     if (*index < devices.size()) return devices[*index];
@@ -149,10 +173,7 @@ void check_selector(const std::string& selector) {
 }
 
 std::vector<DeviceInfo> list_devices() {
-  std::vector<DeviceInfo> infos;
-  for (FoundDevice& device : find_devices())
-    infos.push_back(std::move(device.info));
-  return infos;
+  return infos(find_devices());
 }
 
 }  // namespace ds

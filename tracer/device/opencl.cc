@@ -224,6 +224,12 @@ void Device::fill_zero(const Buffer& buffer) const {
 Program Device::build(const std::string& source, const std::string& options,
                       const fs::path& cache_folder) const {
   const DeviceInfo& device = info();
+  if (!device.is_strict && options.starts_with(k_strict_options))
+    fail(
+        ErrorKind::device,
+        "{} ({}) rounds as it likes, and pictures are to be the same on every device: wanted one "
+        "that rounds divisions and square roots correctly and has fused multiply-add and denormals",
+        device.name, device.platform);
   Program program;
   program.state_ = std::make_shared<Program::State>();
   Program::State& state = *program.state_;

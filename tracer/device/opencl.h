@@ -27,6 +27,9 @@ struct DeviceInfo {
   std::string version;  ///< CL_DEVICE_VERSION; PoCL writes the CPU it compiles for into it
   std::string driver;
   bool is_cpu = false;
+  /// Single floats as strict programs want them: rounded to nearest, division and square root too,
+  /// fused multiply-add, denormals, NaN (CL_DEVICE_SINGLE_FP_CONFIG).
+  bool is_strict = false;
   unsigned float_lanes = 1;  ///< floats in the widest vector it has instructions for
   unsigned compute_units = 0;
   std::uint64_t global_memory_bytes = 0, max_allocation_bytes = 0;
@@ -39,6 +42,10 @@ struct DeviceInfo {
 /// `prepare_pocl_environment`): make it before other threads use getenv or setenv. Throws Error(io)
 /// where no cache folder can be made.
 std::vector<DeviceInfo> list_devices();
+
+/// The device to take where none is named: the first GPU that is strict, for it is the faster one
+/// and gives the same bits; else the first CPU, else the first. `devices` holds at least one.
+std::size_t preferred_device(std::span<const DeviceInfo> devices);
 
 /// Throws what `Device` throws for a selector that fits none or several, without making one.
 void check_selector(const std::string& selector);
@@ -98,9 +105,9 @@ class Kernel {
 /// and its error's name.
 class Device {
  public:
-  /// `selector`: "" = the first CPU device, else the first of any; a number = index into
-  /// `list_devices()`; anything else = part of a device's name in any case, which must fit one
-  /// device only. Throws Error(usage), with a list of what there is, where none fits, and
+  /// `selector`: "" = `preferred_device`; a number = index into `list_devices()`; "cpu" or "gpu" =
+  /// the first of that kind; anything else = part of a device's name in any case, which must fit
+  /// one device only. Throws Error(usage), with a list of what there is, where none fits, and
   /// Error(device) where there is none at all.
   explicit Device(const std::string& selector);
   ~Device();

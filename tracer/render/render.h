@@ -114,7 +114,7 @@ struct TraceProgress {
 /// How the tracer runs on one device; none of it may change a bit of a strict picture (tests hold
 /// it to that).
 struct TracerOptions {
-  /// "" = first CPU device, else first of any; a number or part of a name selects.
+  /// As `Device::Device` has it: "" = the preferred one; a number, a kind or part of a name selects.
   std::string device;
   int lanes = 0;            ///< N: 0 = see default_lanes; 1, 4, 8, 16
   int work_group_size = 0;  ///< 0 = 1 on CPUs, 64 on GPUs

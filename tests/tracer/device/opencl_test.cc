@@ -120,15 +120,37 @@ TEST(Opencl, SelectsByNothingNumberAndPartOfTheName) {
   ASSERT_FALSE(devices.empty());
   EXPECT_EQ(Device("0").info().name, devices[0].name);
   const Device first("");
-  const bool any_cpu =
-      std::any_of(devices.begin(), devices.end(), [](const DeviceInfo& d) { return d.is_cpu; });
-  EXPECT_EQ(first.info().is_cpu, any_cpu);
+  EXPECT_EQ(first.info().name, devices[preferred_device(devices)].name);
+  for (const DeviceInfo& device : devices)
+    EXPECT_EQ(Device(device.is_cpu ? "cpu" : "GPU").info().is_cpu, device.is_cpu);
+  if (std::all_of(devices.begin(), devices.end(), [](const DeviceInfo& d) { return d.is_cpu; })) {
+    EXPECT_THAT(error_text([] { Device("gpu"); }, ErrorKind::usage),
+                AllOf(HasSubstr("no GPU"), HasSubstr("0: " + devices[0].name)));
+  }
   std::string upper = devices[0].name;
   for (char& c : upper)
     c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   if (devices.size() == 1) {
     EXPECT_EQ(Device(upper).info().name, devices[0].name);
   }
+}
+
+TEST(Opencl, PrefersAStrictGpuThenACpu) {
+  const auto preferred = [](std::initializer_list<std::pair<bool, bool>> cpu_and_strict) {
+    std::vector<DeviceInfo> devices;
+    for (const auto& [cpu, strict] : cpu_and_strict) {
+      devices.emplace_back();
+      devices.back().is_cpu = cpu;
+      devices.back().is_strict = strict;
+    }
+    return preferred_device(devices);
+  };
+  EXPECT_EQ(preferred({{true, true}, {false, false}, {false, true}, {false, true}}), 2u);
+  EXPECT_EQ(preferred({{false, false}, {true, true}, {true, true}}), 1u);
+  EXPECT_EQ(preferred({{false, false}, {false, false}}), 0u);
+  EXPECT_EQ(preferred({{true, false}}), 0u);
+  for (const DeviceInfo& device : list_devices())
+    EXPECT_TRUE(device.is_strict) << device.name;
 }
 
 TEST(Opencl, SelectorErrorsListWhatThereIs) {
