@@ -156,7 +156,9 @@ json to_json_value(const DatasetRecord& dataset) {
          "share of the pixels that would show the model alone on a picture without end which are "
          "outside this one; null where some of the model is not before the camera"},
         {"box", "[x, y, width, height] in whole pixels around the model in the mask"},
-        {"model_box", "[least, most] of the model file's coordinates; box_m in the world"}}}};
+        {"model_box",
+         "[least, most] of the model file's coordinates; box_m around its eight corners in the "
+         "world"}}}};
   if (!dataset.about.empty()) object["about"] = dataset.about;
   if (!dataset.shapes.empty()) object["shapes"] = dataset.shapes;
   if (!dataset.hierarchies.empty()) object["hierarchies"] = dataset.hierarchies;

@@ -139,7 +139,7 @@ json image_schema() {
       {"model_to_camera",
        object_of({{"opencv", rows(4, 4)}, {"opengl", rows(4, 4)}}, {"opencv", "opengl"})},
       {"model_box", said(rows(2, 3), "least and greatest of the model file's coordinates")},
-      {"box_m", said(rows(2, 3), "the same in the world, metres")},
+      {"box_m", said(rows(2, 3), "around its corners in the world, metres")},
       {"box", said(or_null(list_of(k_count, 4)), "x, y, width, height in the mask, pixels")},
       {"visible_fraction", or_null(k_number)},
       {"occlusion", or_null(k_number)},

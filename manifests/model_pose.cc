@@ -14,9 +14,19 @@ Box world_box(const ModelPose& pose) {
     };
     return Vec3d{row(0), row(4), row(8)};
   };
-  const Vec3d a = moved(pose.model_box.least), b = moved(pose.model_box.most);
-  return {{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
-          {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}};
+  const Box& box = pose.model_box;
+  const Vec3d first = moved(box.least);
+  Box around{first, first};
+  for (const double x : {box.least.x, box.most.x})
+    for (const double y : {box.least.y, box.most.y})
+      for (const double z : {box.least.z, box.most.z}) {
+        const Vec3d p = moved({x, y, z});
+        around = {{std::min(around.least.x, p.x), std::min(around.least.y, p.y),
+                   std::min(around.least.z, p.z)},
+                  {std::max(around.most.x, p.x), std::max(around.most.y, p.y),
+                   std::max(around.most.z, p.z)}};
+      }
+  return around;
 }
 
 std::array<double, 16> model_to_camera(const ModelPose& pose,

@@ -10,15 +10,15 @@ namespace ds {
 
 /// Where the model of an image stands.
 struct ModelPose {
-  /// The model file's coordinates to the world: turned by multiples of 90 degrees, scaled to metres,
-  /// moved. 4x4, row-major, column vectors.
+  /// The model file's coordinates to the world: turned, scaled to metres, moved. 4x4, row-major, column vectors.
   std::array<double, 16> model_to_world{};
   Box model_box;  ///< around the model, in its file's coordinates
 
   bool operator==(const ModelPose&) const = default;
 };
 
-/// The box around the model in the world, metres: `model_box` turned by multiples of 90 degrees.
+/// The least box of the world's axes around `model_box`, metres: where the model is turned by multiples of 90
+/// degrees that around the model itself.
 Box world_box(const ModelPose& pose);
 
 /// The model file's coordinates to a camera of OpenCV axes (x right, y down, z forward), metres; 4x4,

@@ -63,9 +63,11 @@ class TracerRenderer : public Renderer {
     const ImageSpec* image;
     SceneUse use;
   };
-  static std::string name_of(const ImageSpec& image) {
-    return fmt::format("{}\n{}\n{}\n{}", image.model_file->native(), image.material_file->native(),
-                       image.environment_folder->native(), canonical_change(change_of(image)));
+  std::string name_of(const ImageSpec& image) const {
+    return fmt::format("{}\n{}\n{}\n{}{}", image.model_file->native(),
+                       image.material_file->native(), image.environment_folder->native(),
+                       canonical_change(change_of(image)),
+                       canonical_model({}, {}, normalise_of(image, recipe_)));
   }
 
   void load(const ImageSpec& image, SceneUse use) {
@@ -100,7 +102,7 @@ class TracerRenderer : public Renderer {
     const Scene& material = inputs_.material(image.material_file);
     return [this, use, engine = image.engine, &environment, &material, meshes = &inputs_.meshes(),
             change = change_of(image),
-            source = inputs_.model_source(image.model_file, recipe_.normalise)] {
+            source = inputs_.model_source(image.model_file, normalise_of(image, recipe_))] {
       Mesh model = meshes->get(source);
       Scene scene = change == EnvironmentChange{}
                         ? compose(environment, material, std::move(model))

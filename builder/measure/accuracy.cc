@@ -124,7 +124,7 @@ Subject subject_of(const ImageSpec& image, const Recipe& recipe, Inputs& inputs)
   Subject subject;
   subject.scene = compose(changed(inputs.environment(image.environment_folder), change_of(image)),
                           inputs.material(image.material_file),
-                          inputs.model_mesh(image.model_file, recipe.normalise));
+                          inputs.model_mesh(image.model_file, normalise_of(image, recipe)));
   load_images(subject.scene);
   subject.camera = image.camera;
   subject.engine = image.engine;

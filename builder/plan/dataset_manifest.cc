@@ -120,7 +120,8 @@ ImageRecord image_record(const PlannedImage& image, const Recipe& recipe, const 
   record.lens_radius_m = spec.camera.lens_radius_m;
   record.focus_distance_m = spec.camera.focus_distance_m;
   if (const auto at = plan.extents.find(spec.model_file->native()); at != plan.extents.end())
-    record.pose = {model_to_world(at->second, recipe.normalise).m, at->second.box};
+    record.pose = {model_to_world(at->second, normalise_of(spec, recipe), spec.lowest).m,
+                   at->second.box};
   record.render_key = image.keys.render;
   record.files_key = image.keys.files;
   std::copy_n(image.keys.parts.begin(), record.parts.size(), record.parts.begin());

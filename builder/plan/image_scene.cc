@@ -7,13 +7,16 @@ namespace ds {
 
 void settle_image(ImageSpec& image, const Recipe& recipe, Inputs& inputs) {
   check_drawn(image, recipe);
+  const NormaliseOptions options = normalise_of(image, recipe);
+  if (tilts(options) && options.place_on_ground)
+    image.lowest = inputs.model_lowest(image.model_file, options);
   if (recipe.camera_fit)
-    fit_image(image, recipe, inputs.model_sphere(image.model_file, recipe.normalise));
+    fit_image(image, recipe, inputs.model_sphere(image.model_file, options, image.lowest));
 }
 
 EnvironmentChange change_of(const ImageSpec& image) {
   const Variables& values = image.variables->values;
-  return {values.environment_turn_deg, values.environment_gain};
+  return {values.environment_turn_deg, values.environment_gain, values.environment_temperature_k};
 }
 
 std::string canonical_turn(const EnvironmentChange& change) {
@@ -25,6 +28,7 @@ std::string canonical_turn(const EnvironmentChange& change) {
 std::string canonical_change(const EnvironmentChange& change) {
   CanonicalText text;
   if (change.gain != 1) text.add("environments.gain", change.gain);
+  if (change.temperature_k != 0) text.add("environments.temperature_k", change.temperature_k);
   return canonical_turn(change) + text.text();
 }
 

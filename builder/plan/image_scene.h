@@ -9,9 +9,9 @@
 
 namespace ds {
 
-/// Gives an image the camera it is made with: where one that was drawn sees nothing it throws
-/// Error(recipe), and where the recipe wants it the model just fits. Throws what reading the model
-/// throws.
+/// Gives an image the place of its model and the camera it is made with: where one that was drawn sees
+/// nothing it throws Error(recipe), and where the recipe wants it the model just fits. Throws what
+/// reading the model throws.
 void settle_image(ImageSpec& image, const Recipe& recipe, Inputs& inputs);
 
 /// What of its environment is the image's own.

@@ -11,7 +11,11 @@
 #include "tracer/render/render.h"
 #include "tracer/scene/mesh_shape.h"
 #include "tracer/scene/sdl.h"
+#include "tracer/scene/sdl_math.h"
 
+#include <fmt/format.h>
+
+#include <charconv>
 #include <utility>
 
 namespace ds {
@@ -125,14 +129,46 @@ Mesh ModelMeshes::get(const ModelSource& source) {
   return mesh;
 }
 
-const Sphere& Inputs::model_sphere(const std::filesystem::path& file,
-                                   const NormaliseOptions& options) {
-  return once(spheres_, file, [&](const auto& path) {
-    const Hash128 part = hash_text(canonical_model(model_hashes(path), {}, options));
-    if (const auto known = database_.find_sphere(part, k_host_render_version))
-      return Sphere{{(*known)[0], (*known)[1], (*known)[2]}, (*known)[3]};
-    return new_spheres_.emplace(part, bounding_sphere(model_mesh(path, options))).first->second;
-  });
+Sphere Inputs::model_sphere(const std::filesystem::path& file, const NormaliseOptions& options,
+                            double lowest) {
+  NormaliseOptions still = options;
+  still.turn = NormaliseOptions{}.turn;
+  still.place_m = {};
+  const std::string text = canonical_model(model_hashes(file), {}, still);
+  auto at = spheres_.find(text);
+  if (at == spheres_.end()) {
+    const Hash128 part = hash_text(text);
+    const auto known = database_.find_sphere(part, k_host_render_version);
+    const Sphere sphere =
+        known ? Sphere{{(*known)[0], (*known)[1], (*known)[2]}, (*known)[3]}
+              : new_spheres_.emplace(part, bounding_sphere(model_mesh(file, still))).first->second;
+    at = spheres_.emplace(text, sphere).first;
+  }
+  if (still == options) return at->second;
+  // Turned and moved with the model, however many images show it otherwise.
+  const Mat4 before = model_to_world(model_extent(file), still),
+             after = model_to_world(model_extent(file), options, lowest);
+  return {after.point(portable::inverse(before).point(at->second.centre)), at->second.radius_m};
+}
+
+double Inputs::model_lowest(const std::filesystem::path& file, const NormaliseOptions& options) {
+  NormaliseOptions turned;
+  turned.up = options.up;
+  turned.turn = options.turn;
+  const std::string question =
+      "lowest " + hash_text(canonical_model(model_hashes(file), {}, turned)).hex();
+  if (const auto known = find_known(question)) {
+    double lowest = 0;
+    const auto [end, error] = std::from_chars(known->data(), known->data() + known->size(), lowest);
+    if (error == std::errc() && end == known->data() + known->size()) return lowest;
+  }
+  if (!last_file_ || last_file_->file != file) {
+    last_file_.reset();
+    last_file_ = LastFile{file, read_model(file).mesh};
+  }
+  const double lowest = lowest_of(last_file_->mesh, turned);
+  keep_known(question, fmt::format("{}", lowest));
+  return lowest;
 }
 
 /// A material's images are looked at by every command, and read only where they are not those of

@@ -68,8 +68,12 @@ class Inputs {
   const MendedDamage& model_unlikely(const std::filesystem::path& file) {
     return model(file).unlikely;
   }
-  /// The ball around the model as it is normalised. Reads it where the database does not know it.
-  const Sphere& model_sphere(const std::filesystem::path& file, const NormaliseOptions& options);
+  /// The ball around the model as it is normalised; `lowest` as model_to_world takes it. Reads it where
+  /// the database does not know it.
+  Sphere model_sphere(const std::filesystem::path& file, const NormaliseOptions& options,
+                      double lowest = 0);
+  /// lowest_of it. Reads it likewise.
+  double model_lowest(const std::filesystem::path& file, const NormaliseOptions& options);
   /// What its file has beside places; throws likewise.
   MeshExtras model_has(const std::filesystem::path& file) { return model(file).has; }
   /// Where it lies in its file's coordinates; throws likewise.
@@ -149,7 +153,13 @@ class Inputs {
   std::vector<NewContent> new_contents_;
   std::vector<NewModel> new_models_;
   ModelMeshes meshes_;
-  Known<Sphere> spheres_;
+  std::unordered_map<std::string, Sphere> spheres_;  ///< by canonical_model
+  /// The last that was asked for its lowest point.
+  struct LastFile {
+    std::filesystem::path file;
+    FileMesh mesh;
+  };
+  std::optional<LastFile> last_file_;
   std::map<Hash128, Sphere> new_spheres_;      ///< by the hash of the model part
   std::map<Hash128, InputBounds> new_bounds_;  ///< by the hash of the image and its use
 };

@@ -57,7 +57,8 @@ Mesh stand_in() {
 Scene scene_without_model(Inputs& inputs, const ImageSpec& image) {
   const Scene& environment = inputs.environment(image.environment_folder);
   const Scene& material = inputs.material(image.material_file);
-  const EnvironmentChange gain{0, change_of(image).gain};
+  EnvironmentChange gain = change_of(image);
+  gain.turn_deg = 0;
   return gain == EnvironmentChange{} ? compose(environment, material, stand_in())
                                      : compose(changed(environment, gain), material, stand_in());
 }
@@ -79,6 +80,9 @@ std::string canonical_model(const MeshHashes& mesh, MeshExtras reads,
   if (options.size_m != 0) text.add("size_m", options.size_m);
   if (options.place_on_ground) text.add("ground_z_m", options.ground_z_m);
   text.add("centre", name_of(options.centre));
+  if (turns(options)) text.add("turn", std::span<const double>(options.turn));
+  if (options.place_m != NormaliseOptions{}.place_m)
+    text.add("place_m", std::span<const double>(options.place_m));
   if (!reads.normals) return text.text();
   text.add("normals", name_of(options.normals));
   if (options.normals == Normals::smooth) text.add("crease_deg", options.crease_deg);
@@ -179,7 +183,7 @@ struct Kind {
 
 /// Whether the image's gain makes another program.
 bool is_gained(const ImageSpec& image, const Environment& environment) {
-  return environment.gain_changes_program && change_of(image).gain != 1;
+  return environment.gain_changes_program && is_gain(change_of(image));
 }
 
 /// All that the kinds of effects in an image depend on.
@@ -217,6 +221,7 @@ class KeyMaker::State {
   std::vector<OutputKind> output_kinds_;
   std::vector<WantedPlane> planes_;      ///< as they stand in output_kinds_
   Shared<std::filesystem::path> model_;  ///< the last image's: a model's images follow each other
+  NormaliseOptions options_;             ///< and how it is placed
   std::array<std::optional<Hash128>, 8> model_parts_;  ///< by what of the model is read
   std::unordered_map<const void*, Environment> environments_;
   std::map<std::tuple<const void*, const void*, bool, bool>, Kind> kinds_;
@@ -245,15 +250,17 @@ KeyMaker::State::State(const Recipe& recipe, Inputs& inputs, TextSet& texts)
 }
 
 Hash128 KeyMaker::State::model_part(const ImageSpec& image, MeshExtras reads) {
-  if (!model_.is_same(image.model_file)) {
+  const NormaliseOptions options = normalise_of(image, recipe_);
+  if (!model_.is_same(image.model_file) || options != options_) {
     model_parts_ = {};
     model_ = image.model_file;
+    options_ = options;
   }
   std::optional<Hash128>& part =
       model_parts_[(reads.uvs ? 1U : 0U) + (reads.colors ? 2U : 0U) + (reads.normals ? 4U : 0U)];
   if (!part)
-    part = hash_text(texts_.fold(
-        canonical_model(inputs_.model_hashes(image.model_file), reads, recipe_.normalise)));
+    part = hash_text(
+        texts_.fold(canonical_model(inputs_.model_hashes(image.model_file), reads, options)));
   return *part;
 }
 
@@ -440,8 +447,8 @@ Hash128 KeyMaker::State::kept_key(const ImageSpec& image, const ImageKeys& keys)
 /// known by its hash.
 void KeyMaker::State::add_texts(const ImageSpec& image) {
   Kind& kind = kind_of(image, environment_of(image));
-  texts_.add(
-      canonical_model(inputs_.model_hashes(image.model_file), kind.reads, recipe_.normalise));
+  texts_.add(canonical_model(inputs_.model_hashes(image.model_file), kind.reads,
+                             normalise_of(image, recipe_)));
   texts_.add(canonical_camera(image.camera) + canonical_change(change_of(image)));
   texts_.add(kind.engine.fill({view_of_digits(fmt::format_int(image.engine.seed))}));
   if (texts_.find(kind.program) != nullptr) return;

@@ -113,8 +113,8 @@ std::string unit_of(std::string_view key, double length_m) {
              : fmt::format("{} = {:g} is in metres", key, length_m);
 }
 
-std::string unit_of_model(const Recipe& recipe) {
-  if (recipe.normalise.size_m > 0) return unit_of("models.size_m", recipe.normalise.size_m);
+std::string unit_of_model(double size_m) {
+  if (size_m > 0) return unit_of("models.size_m", size_m);
   return "models.size_m = 0 takes the model file's lengths as metres";
 }
 
@@ -135,7 +135,8 @@ std::string unit_of_focus(const Recipe& recipe, double focus_m) {
 }
 
 /// With the figures of one image, the first of its kind.
-std::string describe(UnlikelySize what, const ImageLengths& image, const Recipe& recipe) {
+std::string describe(UnlikelySize what, const ImageLengths& image, const Recipe& recipe,
+                     double size_m) {
   const double model_m = longest(side_of(image.model)), distance_m = distance_to(image);
   const Camera& camera = image.camera;
   switch (what) {
@@ -144,12 +145,12 @@ std::string describe(UnlikelySize what, const ImageLengths& image, const Recipe&
           "the camera stands inside the model's bounding box: the model is {:.4g} m long, the "
           "camera {:.4g} m from what it looks at; {}",
           model_m, length(camera.position - camera.target),
-          model_m >= 1 ? unit_of_model(recipe) : unit_of_distance(recipe, camera));
+          model_m >= 1 ? unit_of_model(size_m) : unit_of_distance(recipe, camera));
     case UnlikelySize::model_large:
       return fmt::format(
           "the model is far larger than its environment: {:.4g} m long, all objects there {:.4g} "
           "m; {}",
-          model_m, image.environment_m, unit_of_model(recipe));
+          model_m, image.environment_m, unit_of_model(size_m));
     case UnlikelySize::view_narrow:
       return fmt::format(
           "the picture shows {:.2g} m of a model of {:.4g} m: is camera.fov_deg = {:g} in radians? "
@@ -167,7 +168,7 @@ std::string describe(UnlikelySize what, const ImageLengths& image, const Recipe&
       return fmt::format(
           "the model is smaller than two pixels: it is {:.4g} m long and {:.4g} m away; {}",
           model_m, distance_m,
-          distance_m >= 1 ? unit_of_distance(recipe, camera) : unit_of_model(recipe));
+          distance_m >= 1 ? unit_of_distance(recipe, camera) : unit_of_model(size_m));
     case UnlikelySize::lens_wide:
       return fmt::format(
           "the lens is too wide to show the model: its radius is {:.4g} m, the model {:.4g} m long "
@@ -221,14 +222,16 @@ class Finder {
  private:
   void add(UnlikelySize what, const ImageLengths& image, const std::string& id) {
     Found& found = found_[what];
-    if (found.text.empty()) found.text = describe(what, image, recipe_);
+    if (found.text.empty()) found.text = describe(what, image, recipe_, options_.size_m);
     add_example(found.images, id);
   }
 
   ImageLengths lengths_of(const ImageSpec& spec) {
-    if (!model_.is_same(spec.model_file)) {
-      box_ = normalised_box(inputs_.model_extent(spec.model_file), recipe_.normalise);
+    const NormaliseOptions options = normalise_of(spec, recipe_);
+    if (!model_.is_same(spec.model_file) || options != options_) {
+      box_ = normalised_box(inputs_.model_extent(spec.model_file), options, spec.lowest);
       model_ = spec.model_file;
+      options_ = options;
     }
     return {spec.camera, spec.engine.width, spec.engine.height, box_,
             inputs_.environment_facts(spec.environment_folder).longest_side_m};
@@ -237,6 +240,7 @@ class Finder {
   const Recipe& recipe_;
   Inputs& inputs_;
   Shared<std::filesystem::path> model_;  // of the image before: a model's images follow each other
+  NormaliseOptions options_;
   Box box_;
   std::map<UnlikelySize, Found> found_;
 };

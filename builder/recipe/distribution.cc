@@ -303,19 +303,24 @@ std::optional<Distribution> Reader::constant(const RecipeValue& value) {
     numbers = numbers_of(value, width, width);
   }
   const bool in_range =
-      numbers && std::all_of(numbers->begin(), numbers->end(),
-                             [&](double number) { return range_.contains(number); });
+      numbers &&
+      std::all_of(numbers->begin(), numbers->end(),
+                  [&](double number) { return range_.contains(number); }) &&
+      (kind_ != DrawnKind::rotation ||
+       std::any_of(numbers->begin(), numbers->end(), [](double number) { return number != 0; }));
   if (!in_range) {
     const std::string range = range_.text();
     complain(value, "must choose among {}{}{}, got {}",
-             width == 3                    ? "lists of three numbers"
+             width == 4                    ? "lists of four numbers, not all 0,"
+             : width == 3                  ? "lists of three numbers"
              : kind_ == DrawnKind::integer ? "integers"
                                            : "numbers",
              range.empty() ? "" : " ", range, to_toml(value));
     return std::nullopt;
   }
   to_.kind = kind_;
-  to_.numbers = *std::move(numbers);
+  to_.numbers =
+      kind_ == DrawnKind::rotation ? unit_quaternion(*std::move(numbers)) : *std::move(numbers);
   return to_;
 }
 
@@ -355,6 +360,21 @@ std::optional<Distribution> Reader::read(const RecipeValue& value) {
 }
 
 }  // namespace
+
+std::vector<double> unit_quaternion(std::vector<double> numbers) {
+  // By the greatest first: a square neither under- nor overflows.
+  double greatest = 0;
+  for (const double x : numbers)
+    greatest = std::max(greatest, std::fabs(x));
+  double sum = 0;
+  for (double& x : numbers) {
+    x /= greatest;
+    sum += x * x;
+  }
+  for (double& x : numbers)
+    x /= std::sqrt(sum);
+  return numbers;
+}
 
 std::optional<Distribution> read_distribution(const RecipeValue& table, DrawnKind kind,
                                               const NumberRange& range, const Complaint& complain) {

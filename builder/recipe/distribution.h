@@ -99,6 +99,9 @@ std::span<const DistributionWord> distribution_words();
 const DistributionWord* find_word(std::string_view name);
 bool may_draw(const DistributionWord& word, DrawnKind kind);
 
+/// Four numbers that are not all 0, of length 1.
+std::vector<double> unit_quaternion(std::vector<double> numbers);
+
 using Complaint = std::function<void(const RecipeValue& at, const std::string& message)>;
 
 /// Whether a value is written as a distribution, well or badly.

@@ -199,7 +199,7 @@ std::string check_hsv(Distribution& d) {
 constexpr DrawnKind k_numbers[] = {DrawnKind::number};
 constexpr DrawnKind k_integers[] = {DrawnKind::integer};
 constexpr DrawnKind k_even[] = {DrawnKind::number, DrawnKind::integer, DrawnKind::point,
-                                DrawnKind::colour};
+                                DrawnKind::colour, DrawnKind::rotation};
 constexpr DrawnKind k_points[] = {DrawnKind::point};
 constexpr DrawnKind k_colours[] = {DrawnKind::colour};
 constexpr DrawnKind k_rotations[] = {DrawnKind::rotation};

@@ -170,6 +170,15 @@ std::string suffix(const Recipe& recipe, const std::string& material,
 
 }  // namespace
 
+NormaliseOptions normalise_of(const ImageSpec& image, const Recipe& recipe) {
+  NormaliseOptions options = recipe.normalise;
+  const Variables& values = image.variables->values;
+  options.size_m = values.model_size_m;
+  options.turn = values.model_turn;
+  options.place_m = values.model_place_m;
+  return options;
+}
+
 void fit_image(ImageSpec& image, const Recipe& recipe, const Sphere& model) {
   if (!recipe.camera_fit) return;
   image.camera =

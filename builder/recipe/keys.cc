@@ -75,7 +75,23 @@ constexpr std::array k_own_keys = {
             "The models' upward axis. \"y\" turns them by 90 degrees about x, so that Z is up; "
             "\"z\" leaves them"},
     KeySpec{"models.size_m", scene, number, "m", "0.16", between(0, k_far_m), "", "",
-            "Longest side of the bounding box after scaling; 0 keeps the size"},
+            "Longest side of the bounding box after scaling, before turn; 0 keeps the size. Drawn "
+            "once a model where its distribution does not say per = \"view\""},
+    KeySpec{
+        "models.turn",
+        scene,
+        quaternion,
+        "",
+        "\"none\"",
+        {-1, 1},
+        "\"none\"",
+        "",
+        "Turns the model, whose size stays: a quaternion w, x, y, z, of which the length does "
+        "not count, or a distribution: { rotation = \"up\" } about the vertical, \"any\" evenly "
+        "over all rotations. models.ground_z_m puts what has been turned on the ground"},
+    KeySpec{"models.place_m", scene, point, "m", "[0, 0, 0]", k_coordinate, "", "",
+            "Moves the model, which models.centre and models.ground_z_m placed; the third number "
+            "lifts it off the ground"},
     KeySpec{"models.ground_z_m", scene, number, "m", "-0.0574", k_coordinate, "false", "",
             "The least z after moving; false leaves the height"},
     KeySpec{"models.centre", scene, choice, "", "\"mass\"", k_any, R"("mass" | "box" | "none")", "",
@@ -172,6 +188,11 @@ constexpr std::array k_own_keys = {
             "counter-clockwise seen from above"},
     KeySpec{"environments.gain", film, number, "", "1", k_factor, "", "",
             "Factor on all light of the environment"},
+    KeySpec{"environments.temperature_k", film, number, "K", "false", between(1700, 25000), "false",
+            "",
+            "Multiplies all light of the environment by the colour of a black body of this "
+            "temperature, of luminance 1: 3000 is warm, 6500 nearly as it is, 10000 bluish. false: "
+            "as it is"},
 
     KeySpec{"camera.set", images, choice, "", "\"half-dodecahedron\"", k_any,
             R"("half-dodecahedron" | "list" | "orbit" | "hemisphere" | "random")", "",

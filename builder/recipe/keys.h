@@ -22,6 +22,7 @@ enum class KeyType {
   integer_list,  ///< of counts
   number,        ///< an integer is one too
   point,         ///< three numbers
+  quaternion,    ///< four numbers, not all 0: w, x, y, z
   point_list,
 };
 

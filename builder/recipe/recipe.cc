@@ -33,7 +33,6 @@ Enum chosen(const Settings& settings, std::string_view key,
 NormaliseOptions read_normalise(const Settings& settings) {
   NormaliseOptions options;
   options.up = chosen<UpAxis, 2>(settings, "models.up", {"y", "z"});
-  options.size_m = settings.number("models.size_m");
   options.place_on_ground = settings.find("models.ground_z_m")->is_number();
   if (options.place_on_ground) options.ground_z_m = settings.number("models.ground_z_m");
   options.centre = chosen<Centring, 3>(settings, "models.centre", {"none", "mass", "box"});
@@ -188,6 +187,7 @@ Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrid
   read_classes(settings, recipe);
   read_assignments(settings, recipe);
   recipe.constants = constants_of(settings);
+  recipe.normalise.size_m = recipe.constants.model_size_m;
   recipe.drawn = drawn_of(settings);
   CameraViews views = make_cameras(settings, recipe.constants);
   recipe.camera_set = std::move(views.set);

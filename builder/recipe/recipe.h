@@ -100,7 +100,7 @@ struct Recipe {
   /// Material files, sorted by name, which no two share.
   std::vector<std::filesystem::path> materials;
   std::vector<std::filesystem::path> environments;  ///< folders, sorted by name, which no two share
-  NormaliseOptions normalise;
+  NormaliseOptions normalise;  ///< but for what images have of their own: see normalise_of
   std::optional<std::filesystem::path> train_classes, test_classes;
   std::string
       classes_from;  ///< "folder", "folders" or a file's name; "" where classes.from is not given
@@ -161,6 +161,7 @@ struct ImageSpec {
   Shared<std::string> view;
   Camera camera;
   Shared<ImageVariables> variables;
+  double lowest = 0;                  ///< of its model, as lowest_of has it; known where settled
   EngineSettings engine;              ///< with this image's own seed, below 2^53
   Shared<std::string> class_path;     ///< "vehicle/car", "" where unclassified
   Shared<std::string> split;          ///< "train", "test" or "" where there is none
@@ -191,6 +192,9 @@ std::size_t image_count(const Recipe& recipe);
 using ClassIds = std::map<std::string, std::uint64_t, std::less<>>;
 /// Of classes.ids, in its order, and then of the paths that it does not name; "" is no class.
 ClassIds class_ids(const Recipe& recipe, const std::set<std::string>& paths);
+
+/// How the image's model is placed.
+NormaliseOptions normalise_of(const ImageSpec& image, const Recipe& recipe);
 
 /// Draws again what the recipe draws, for an image of which so many draws were rejected, and its
 /// camera with it.

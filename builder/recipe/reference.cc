@@ -36,6 +36,8 @@ std::string_view type_text(KeyType type) {
       return "a number";
     case KeyType::point:
       return "a list of three numbers";
+    case KeyType::quaternion:
+      return "a list of four numbers";
     case KeyType::point_list:
       return "a list of lists of three numbers";
   }

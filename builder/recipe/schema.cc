@@ -28,10 +28,10 @@ json number_in(const char* type, const KeyRange& range) {
   return schema;
 }
 
-json point_in(const KeyRange& range) {
-  json point = list_of(number_in("number", range));
-  point["minItems"] = point["maxItems"] = 3;
-  return point;
+json numbers_in(const KeyRange& range, std::size_t count) {
+  json list = list_of(number_in("number", range));
+  list["minItems"] = list["maxItems"] = count;
+  return list;
 }
 
 /// Null for a key that has literals alone.
@@ -56,9 +56,11 @@ json type_schema(const KeySpec& key) {
     case KeyType::number:
       return number_in("number", key.range);
     case KeyType::point:
-      return point_in(key.range);
+      return numbers_in(key.range, 3);
+    case KeyType::quaternion:
+      return numbers_in(key.range, 4);
     case KeyType::point_list:
-      return list_of(point_in(key.range));
+      return list_of(numbers_in(key.range, 3));
   }
   return nullptr;
 }

@@ -21,9 +21,9 @@ bool is_name(std::string_view text) {
   return !text.empty() && text.front() != '.' && text.find_first_not_of(k_allowed) == text.npos;
 }
 
-bool is_point(const KeySpec& key, const RecipeValue& value) {
+bool is_list_of(std::size_t count, const KeySpec& key, const RecipeValue& value) {
   const auto* list = value.array();
-  return list != nullptr && list->size() == 3 &&
+  return list != nullptr && list->size() == count &&
          std::all_of(list->begin(), list->end(), [&](const RecipeValue& v) {
            return v.is_number() && key.range.contains(v.number());
          });
@@ -65,9 +65,14 @@ const RecipeValue* unfit_part(const KeySpec& key, const RecipeValue& value) {
       return first_unfit(
           value, [](const RecipeValue& v) { return v.integer() != nullptr && *v.integer() >= 0; });
     case KeyType::point:
-      return all_or_nothing(is_point(key, value));
+      return all_or_nothing(is_list_of(3, key, value));
+    case KeyType::quaternion:
+      return all_or_nothing(
+          is_list_of(4, key, value) &&
+          std::any_of(value.array()->begin(), value.array()->end(),
+                      [](const RecipeValue& number) { return number.number() != 0; }));
     case KeyType::point_list:
-      return first_unfit(value, [&](const RecipeValue& v) { return is_point(key, v); });
+      return first_unfit(value, [&](const RecipeValue& v) { return is_list_of(3, key, v); });
   }
   return &value;
 }
@@ -165,6 +170,8 @@ void Settings::check(const std::string& name, RecipeValue value) {
     auto distribution = read_distribution(
         value, row->kind, key->range,
         [&](const RecipeValue& at, const std::string& message) { complain(at, name, message); });
+    if (distribution && !distribution->word->by_view && !value.table()->contains("per"))
+      distribution->per = row->per;
     if (distribution) distributions_.emplace(name, *std::move(distribution));
     (distribution ? values_ : wrong_).emplace(name, std::move(value));
     return;

@@ -9,9 +9,15 @@ namespace ds {
 namespace {
 
 constexpr VariableKey k_variables[] = {
+    {"models.size_m", DrawnKind::number, [](Variables& v) { return &v.model_size_m; },
+     DrawnPer::model},
+    {"models.turn", DrawnKind::rotation, [](Variables& v) { return v.model_turn.data(); }},
+    {"models.place_m", DrawnKind::point, [](Variables& v) { return v.model_place_m.data(); }},
     {"environments.turn_deg", DrawnKind::number,
      [](Variables& v) { return &v.environment_turn_deg; }},
     {"environments.gain", DrawnKind::number, [](Variables& v) { return &v.environment_gain; }},
+    {"environments.temperature_k", DrawnKind::number,
+     [](Variables& v) { return &v.environment_temperature_k; }},
     {"camera.distance_m", DrawnKind::number, [](Variables& v) { return &v.distance_m; }},
     {"camera.position_m", DrawnKind::point, [](Variables& v) { return v.position_m.data(); }},
     {"camera.elevation_deg", DrawnKind::number, [](Variables& v) { return &v.elevation_deg; }},
@@ -34,6 +40,7 @@ std::vector<double> constant_of(const Settings& settings, const VariableKey& row
   if (value->array() != nullptr)
     for (const RecipeValue& element : *value->array())
       numbers.push_back(element.number());
+  if (row.kind == DrawnKind::rotation) numbers = unit_quaternion(std::move(numbers));
   return numbers;
 }
 

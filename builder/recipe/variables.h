@@ -18,12 +18,16 @@ class Settings;
 /// The numbers of a recipe that may differ from image to image, each the member that
 /// variable_keys() names. Metres and degrees, as the keys.
 struct Variables {
+  double model_size_m = 0;
+  std::array<double, 4> model_turn{1, 0, 0, 0};
+  std::array<double, 3> model_place_m{};
   double distance_m = 1;  ///< 1 with camera.distance_m = "fit"
   double elevation_deg = 0, azimuth_deg = 0, roll_deg = 0;
   double span = 0;  ///< camera.fov_deg or camera.extent_m
   double lens_radius_m = 0, focus_distance_m = 0;
   std::array<double, 3> target{}, position_m{};
   double environment_turn_deg = 0, environment_gain = 1;
+  double environment_temperature_k = 0;  ///< 0: false
 
   bool operator==(const Variables&) const = default;
 };
@@ -34,6 +38,7 @@ struct VariableKey {
   DrawnKind kind;
   /// The first of its width_of(kind) numbers.
   double* (*at)(Variables&);
+  DrawnPer per = DrawnPer::view;  ///< where the recipe does not say
 };
 std::span<const VariableKey> variable_keys();
 /// nullptr for a key that takes none.

@@ -85,6 +85,45 @@ std::array<double, 12> model_to_camera(const std::array<double, 12>& world, Vec3
   return m;
 }
 
+/// The model of the first image's pose to that of an image's own: the world, moved with it.
+std::array<double, 12> moved_with(const std::array<double, 12>& world, const ModelPose& first,
+                                  const ModelPose& own, const ImageRecord& record) {
+  if (own == first) return world;
+  // Both are a rotation times a size, so that an inverse is a transpose over the size's square.
+  const auto &a = first.model_to_world, &b = own.model_to_world;
+  const auto squared_size = [](const std::array<double, 16>& m) {
+    return m[0] * m[0] + m[4] * m[4] + m[8] * m[8];
+  };
+  const double size = squared_size(a);
+  constexpr double k_rounding = 1e-9;
+  if (std::abs(squared_size(b) - size) > k_rounding * size)
+    fail(ErrorKind::asset,
+         "the image {}: shows its model in another size than other images, and bop has one for "
+         "all: models.size_m with per = \"model\" gives each model one",
+         record.id);
+  std::array<double, 12> move{};  // own x inverse of first
+  for (std::size_t row = 0; row < 3; ++row) {
+    move[4 * row + 3] = b[4 * row + 3];
+    for (std::size_t column = 0; column < 3; ++column) {
+      double sum = 0;
+      for (std::size_t k = 0; k < 3; ++k)
+        sum += b[4 * row + k] * a[4 * column + k];
+      move[4 * row + column] = sum / size;
+      move[4 * row + 3] -= move[4 * row + column] * a[4 * column + 3];
+    }
+  }
+  std::array<double, 12> m{};
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 3; ++column)
+      for (std::size_t k = 0; k < 3; ++k)
+        m[4 * row + column] += world[4 * row + k] * move[4 * k + column];
+    m[4 * row + 3] = world[4 * row + 3];
+    for (std::size_t k = 0; k < 3; ++k)
+      m[4 * row + 3] += 1000 * world[4 * row + k] * move[4 * k + 3];
+  }
+  return m;
+}
+
 /// As the format's toolkit counts: greatest less least.
 std::vector<int> box_of(const MaskPixels& mask) {
   const auto box = tight_box(mask);
@@ -149,6 +188,7 @@ class Bop : public Exporter {
   ExportFolder& to_;
   std::string model_name_;  ///< images of one model follow each other
   BopModel model_;
+  ModelPose pose_;            ///< in which model_ was taken
   std::uint64_t object_ = 0;  ///< from 1
   Members models_info_;
   json objects_ = json::object();
@@ -163,7 +203,8 @@ void Bop::take_model(const ExportImage& image) {
     fail(ErrorKind::asset, "the image {}: its line has no model_to_world; dsbuild build writes it",
          record.id);
   model_name_ = record.model;
-  model_ = bop_model(input_.mesh(record), *record.pose);
+  pose_ = *record.pose;
+  model_ = bop_model(input_.mesh(record), pose_);
   ++object_;
   to_.write(fmt::format("models/obj_{:06}.ply", object_), ply_text(model_));
   const Vec3d side = model_.most - model_.least;
@@ -198,7 +239,11 @@ void Bop::add_labels(Scene& scene, const ExportImage& image, const DepthPixels& 
   const ImageRecord& record = image.record;
   const std::string number = std::to_string(scene.images);
   const auto world = world_to_camera(record.camera_to_world);
-  const auto to_camera = model_to_camera(world, model_.middle_m);
+  if (!record.pose)
+    fail(ErrorKind::asset, "the image {}: its line has no model_to_world; dsbuild build writes it",
+         record.id);
+  const auto to_camera =
+      model_to_camera(moved_with(world, pose_, *record.pose, record), model_.middle_m);
   const std::array<double, 9>& pinhole = intrinsics_for("bop", record);
   std::array<double, 9> k = pinhole;
   k[2] -= 0.5;

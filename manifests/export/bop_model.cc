@@ -59,11 +59,17 @@ Silhouette found_on(const Canvas& canvas, int width, int height) {
 
 BopModel bop_model(const FileMesh& mesh, const ModelPose& pose) {
   BopModel model;
-  const Box box = world_box(pose);
-  model.middle_m = (box.least + box.most) * 0.5;
-  model.points.reserve(mesh.positions.size());
   for (const Vec3d p : mesh.positions)
-    model.points.push_back((moved(pose.model_to_world, p) - model.middle_m) * k_mm);
+    model.points.push_back(moved(pose.model_to_world, p));
+  Box box{model.points.at(0), model.points.at(0)};
+  for (const Vec3d p : model.points) {
+    box.least = {std::min(box.least.x, p.x), std::min(box.least.y, p.y),
+                 std::min(box.least.z, p.z)};
+    box.most = {std::max(box.most.x, p.x), std::max(box.most.y, p.y), std::max(box.most.z, p.z)};
+  }
+  model.middle_m = (box.least + box.most) * 0.5;
+  for (Vec3d& p : model.points)
+    p = (p - model.middle_m) * k_mm;
   model.triangles = mesh.triangles;
   model.least = (box.least - model.middle_m) * k_mm;
   model.most = (box.most - model.middle_m) * k_mm;

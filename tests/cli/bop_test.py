@@ -81,7 +81,9 @@ class BopTest(TinyCase):
                          {"diameter", "min_x", "min_y", "min_z", "size_x", "size_y", "size_z"})
 
     def test_models_and_poses_agree_with_masks_and_depths(self):
-        for more in ([], ["--set", "models.up=z", "--set", "models.size_m=0.1", "--set", "camera.azimuth_deg=33"]):
+        for more in ([], ["--set", "models.up=z", "--set", "models.size_m=0.1", "--set", "camera.azimuth_deg=33"],
+                     ["--set", 'models.turn={rotation="any"}', "--set", "models.size_m={uniform=[0.08,0.12]}",
+                      "--set", "models.place_m={disc=0.02}"]):
             self.export(*more)
             info, objects = self.load("models/models_info.json"), self.load("dataset_info.json")["objects"]
             self.assertEqual([objects[i]["model"] for i in ("1", "2")], ["box.off", "tetra.ply"])

@@ -34,6 +34,15 @@ def turn(a, b, c):
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
+def hull_pixels(points):
+    """Pixels whose centres some triangle of three of the points holds."""
+    (x0, x1), (y0, y1) = [[int(f(p[axis] for p in points)) for f in (min, max)] for axis in (0, 1)]
+    corners = list(itertools.combinations(points, 3))
+    def held(p):
+        return any(min(t) >= 0 or max(t) <= 0 for t in ((turn(a, b, p), turn(b, c, p), turn(c, a, p)) for a, b, c in corners))
+    return {(x, y) for y in range(y0, y1 + 1) for x in range(x0, x1 + 1) if held((x + 0.5, y + 0.5))}
+
+
 class LabelsTest(TinyCase):
     def records(self):
         return [json.loads(line) for line in (self.out / "manifest/images.jsonl").read_text().splitlines()]
@@ -53,7 +62,14 @@ class LabelsTest(TinyCase):
     def test_vertices_of_the_file_are_projected_to_the_mask(self):
         for more in ([], ["--set", "models.up=z", "--set", "models.centre=box", "--set", "models.size_m=0.1"],
                      ["--set", "models.centre=none", "--set", "models.size_m=0", "--set", "camera.distance_m=7",
-                      "--set", "models.ground_z_m=false"]):
+                      "--set", "models.ground_z_m=false"],
+                     ["--set", 'models.turn={rotation="up"}', "--set", "models.place_m={disc=0.03}"],
+                     ["--set", 'models.turn={rotation="any"}', "--set", "models.size_m={uniform=[0.05,0.1]}",
+                      "--set", "models.place_m=[0.02,-0.03,0.01]"],
+                     ["--set", 'models.turn={rotation="any"}', "--set", "models.place_m={disc=0.2}",
+                      "--set", 'camera.distance_m="fit"'],
+                     ["--set", 'models.turn=[1,0.2,0.3,0.4]', "--set", "models.ground_z_m=false", "--set", "models.centre=box",
+                      "--set", "models.place_m=[0,0,0.2]", "--set", 'camera.distance_m="fit"']):
             self.build(*SIZE, *more)
             for record in self.records():
                 model = corners_of(record["model"], (self.tiny / "models" / record["model"]).read_text())
@@ -64,18 +80,24 @@ class LabelsTest(TinyCase):
                         for p in (moved(to_camera, corner) for corner in model)]
                 x, y, width, height = record["box"]
                 # All of a convex body whose corners are in the picture, and nothing stands before it.
-                for axis, first, size in ((0, x, width), (1, y, height)):
+                for axis, first, size in ((0, x, width), (1, y, height)) if "turn" not in str(more) else ():
                     ends = [s[axis] for s in seen]
                     self.assertAlmostEqual(min(ends), first, delta=1.01, msg=record["id"])
                     self.assertAlmostEqual(max(ends), first + size, delta=1.01, msg=record["id"])
+                inside = hull_pixels(seen) if "turn" in str(more) else set(pixels)
+                self.assertLessEqual(len(inside ^ set(pixels)), 2, f"but for centres on an edge: {record['id']} {more}")
                 self.assertEqual([x, y, x + width - 1, y + height - 1],
                                  [f(p[axis] for p in pixels) for f in (min, max) for axis in (0, 1)])
-                # The boxes hold the vertices and are tight.
-                for matrix, box in ((None, "model_box"), (record["model_to_world"], "box_m")):
-                    points = [moved(matrix, p) if matrix else p for p in model]
+                # The boxes are tight around the vertices, and around what stands for them in the world.
+                eight = list(itertools.product(*zip(*record["model_box"])))
+                for box, points in (("model_box", model), ("box_m", [moved(record["model_to_world"], p) for p in eight])):
                     ends = [[f(p[axis] for p in points) for axis in range(3)] for f in (min, max)]
                     self.assert_close(record[box], ends)
                 self.assert_close(record["model_to_camera"]["opencv"], to_camera)
+                if "ground_z_m" not in str(more):
+                    lift = 0.01 if "0.02,-0.03" in str(more) else 0
+                    lowest = min(moved(record["model_to_world"], p)[2] for p in model)
+                    self.assertAlmostEqual(lowest, -0.0574 + lift, delta=1e-9)
                 flip = [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]
                 self.assert_close(record["model_to_camera"]["opengl"], product(flip, to_camera))
 

@@ -240,9 +240,18 @@ struct NormaliseOptions {
   bool place_on_ground = true;  ///< move so that the least z is ground_z_m
   double ground_z_m = -0.0574;  ///< finite
   Centring centre = Centring::mass;  ///< of x and y, moved to 0
+  /// A unit quaternion: w, x, y, z. Turns the mesh when its size is chosen and before it is put on the
+  /// ground, about the point that `centre` moves to 0; with z as the file has it about its height 0.
+  std::array<double, 4> turn{1, 0, 0, 0};
+  std::array<double, 3> place_m{};  ///< added at last, finite
   Normals normals = Normals::smooth;
   double crease_deg = 60.0;  ///< in [0, 180]: faces that meet at a larger angle keep an edge
+
+  bool operator==(const NormaliseOptions&) const = default;
 };
+/// Whether the turn moves anything, and whether it moves what points up.
+bool turns(const NormaliseOptions& options);
+bool tilts(const NormaliseOptions& options);
 
 /// Turns, scales, places and shades a mesh of at least one triangle. Arithmetic in double with
 /// + - * / and sqrt only, results rounded once to float: the same bits on every machine. No -0.
@@ -287,10 +296,13 @@ struct MeshExtent {
   bool operator==(const MeshExtent&) const = default;
 };
 MeshExtent extent_of(const FileMesh& mesh);
+/// The least z of the mesh turned as `normalise` turns it, in the file's unit: what `lowest` below wants
+/// where a mesh that tilts is placed on the ground, whose box does not tell it.
+double lowest_of(const FileMesh& mesh, const NormaliseOptions& options);
 /// Turns, scales and moves a file's coordinates as `normalise` does; its places are these to single
 /// floats.
-Mat4 model_to_world(const MeshExtent& file, const NormaliseOptions& options);
-/// The box of the normalised mesh.
-Box normalised_box(const MeshExtent& file, const NormaliseOptions& options);
+Mat4 model_to_world(const MeshExtent& file, const NormaliseOptions& options, double lowest = 0);
+/// The box of the normalised mesh; of one that is turned, that around its turned box.
+Box normalised_box(const MeshExtent& file, const NormaliseOptions& options, double lowest = 0);
 
 }  // namespace ds

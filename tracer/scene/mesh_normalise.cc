@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace ds {
@@ -17,6 +18,28 @@ namespace {
 Vec3d turned(Vec3d v, UpAxis up) {
   return up == UpAxis::y ? Vec3d{v.x, -v.z, v.y} : v;
 }
+
+/// Rows of the matrix of a unit quaternion.
+std::array<Vec3d, 3> rows_of(const std::array<double, 4>& q) {
+  const auto [w, x, y, z] = q;
+  return {Vec3d{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+          Vec3d{2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+          Vec3d{2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
+}
+
+/// options.turn of what is upright. Where it turns nothing no bit changes.
+class Turner {
+ public:
+  explicit Turner(const NormaliseOptions& options)
+      : turns_(turns(options)), rows_(rows_of(options.turn)) {}
+  Vec3d operator()(Vec3d v) const {
+    return turns_ ? Vec3d{dot(rows_[0], v), dot(rows_[1], v), dot(rows_[2], v)} : v;
+  }
+
+ private:
+  bool turns_;
+  std::array<Vec3d, 3> rows_;
+};
 
 /// -0 becomes 0, so that the hash of a mesh does not depend on how a zero came about.
 Vec3 rounded(Vec3d v) {
@@ -58,8 +81,10 @@ double scale_of(const Box& box, const NormaliseOptions& options) {
   return options.size_m > 0 ? options.size_m / longest : 1;
 }
 
+/// Where the point that becomes the origin goes in the end.
 Vec3d ground_of(const NormaliseOptions& options) {
-  return {0, 0, options.place_on_ground ? options.ground_z_m : 0};
+  const auto [x, y, z] = options.place_m;
+  return {x, y, (options.place_on_ground ? options.ground_z_m : 0) + z};
 }
 
 /// Area-weighted centroid of the surface, summed about `origin` to keep the digits of a far mesh.
@@ -81,13 +106,24 @@ Vec3d middle_of(const Box& box) {
   return (box.least + box.most) * 0.5;
 }
 
-/// Which point becomes the origin, before scaling; of a mesh that is turned.
-Vec3d centre_of(const MeshExtent& mesh, const NormaliseOptions& options) {
+/// Which point becomes the origin, before scaling, when the upright mesh has been turned; `lowest` is
+/// then its least z.
+Vec3d centre_of(const MeshExtent& upright, const NormaliseOptions& options, double lowest) {
   Vec3d centre;
-  if (options.centre == Centring::mass) centre = mesh.centroid;
-  if (options.centre == Centring::box) centre = middle_of(mesh.box);
-  centre.z = options.place_on_ground ? mesh.box.least.z : 0;
+  if (options.centre == Centring::mass) centre = upright.centroid;
+  if (options.centre == Centring::box) centre = middle_of(upright.box);
+  if (turns(options)) {
+    if (!options.place_on_ground) centre.z = 0;
+    centre = Turner(options)(centre);
+    if (!options.place_on_ground) return centre;
+  }
+  centre.z = options.place_on_ground ? lowest : 0;
   return centre;
+}
+
+/// `lowest`: as lowest_of has it, of one that tilts.
+Vec3d centre_of_upright(const MeshExtent& upright, const NormaliseOptions& options, double lowest) {
+  return centre_of(upright, options, tilts(options) ? lowest : upright.box.least.z);
 }
 
 MeshExtent extent_of(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles) {
@@ -100,12 +136,15 @@ MeshExtent turned(const MeshExtent& mesh, UpAxis up) {
           turned(mesh.centroid, up)};
 }
 
-std::vector<Vec3> placed_positions(const std::vector<Vec3d>& positions,
+/// Turns the upright positions too.
+std::vector<Vec3> placed_positions(std::vector<Vec3d>& positions,
                                    const std::vector<Triangle>& triangles,
                                    const NormaliseOptions& options) {
   const MeshExtent extent = extent_of(positions, triangles);
   const double scale = scale_of(extent.box, options);
-  const Vec3d centre = centre_of(extent, options);
+  std::transform(positions.begin(), positions.end(), positions.begin(), Turner(options));
+  const Vec3d centre =
+      centre_of_upright(extent, options, tilts(options) ? bounds(positions).least.z : 0);
   const Vec3d ground = ground_of(options);
   std::vector<Vec3> placed;
   placed.reserve(positions.size());
@@ -175,14 +214,16 @@ Mesh with_corner_normals(const FileMesh& source, const std::vector<Vec3>& placed
   return mesh;
 }
 
-Mesh with_stored_normals(const FileMesh& source, std::vector<Vec3> placed, UpAxis up) {
+Mesh with_stored_normals(const FileMesh& source, std::vector<Vec3> placed,
+                         const NormaliseOptions& options) {
   if (source.normals.empty())
     fail(ErrorKind::asset, "the model has no normals to keep: \"smooth\" or \"flat\" makes them");
   Mesh mesh;
   mesh.positions = std::move(placed);
   mesh.normals.reserve(source.normals.size());
+  const Turner turn(options);
   for (const Vec3 n : source.normals)
-    mesh.normals.push_back(rounded(turned(to_double(n), up)));
+    mesh.normals.push_back(rounded(turn(turned(to_double(n), options.up))));
   mesh.uvs = source.uvs;
   mesh.colors = source.colors;
   mesh.triangles = source.triangles;
@@ -200,16 +241,25 @@ std::vector<Vec3d> flat_corner_normals(const std::vector<Vec3d>& positions,
 
 }  // namespace
 
+bool turns(const NormaliseOptions& options) {
+  const auto [w, x, y, z] = options.turn;
+  return x != 0 || y != 0 || z != 0;
+}
+
+bool tilts(const NormaliseOptions& options) {
+  return options.turn[1] != 0 || options.turn[2] != 0;
+}
+
 Mesh normalise(const FileMesh& mesh, const NormaliseOptions& options) {
   DS_ASSERT(!mesh.triangles.empty());
   DS_ASSERT(std::isfinite(options.size_m) && options.size_m >= 0);
   DS_ASSERT(std::isfinite(options.ground_z_m));
   DS_ASSERT(options.crease_deg >= 0 && options.crease_deg <= 180);
-  const std::vector<Vec3d> positions = turned_positions(mesh, options.up);
+  std::vector<Vec3d> positions = turned_positions(mesh, options.up);
   std::vector<Vec3> placed = placed_positions(positions, mesh.triangles, options);
   check_digits(placed);
   if (options.normals == Normals::keep)
-    return with_stored_normals(mesh, std::move(placed), options.up);
+    return with_stored_normals(mesh, std::move(placed), options);
   // Normals come from the file's coordinates, which rounding has not touched yet.
   const std::vector<std::uint32_t> welded = weld(mesh.positions);
   return with_corner_normals(
@@ -231,13 +281,23 @@ MeshExtent extent_of(const FileMesh& mesh) {
   return extent_of(mesh.positions, mesh.triangles);
 }
 
-Mat4 model_to_world(const MeshExtent& file, const NormaliseOptions& options) {
+double lowest_of(const FileMesh& mesh, const NormaliseOptions& options) {
+  const Turner turn(options);
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Vec3d p : mesh.positions)
+    lowest = std::min(lowest, turn(turned(p, options.up)).z);
+  return lowest;
+}
+
+Mat4 model_to_world(const MeshExtent& file, const NormaliseOptions& options, double lowest) {
   const MeshExtent mesh = turned(file, options.up);
   const double scale = scale_of(mesh.box, options);
-  const Vec3d move = ground_of(options) - centre_of(mesh, options) * scale;
+  const Vec3d move = ground_of(options) - centre_of_upright(mesh, options, lowest) * scale;
+  const Turner turn(options);
   Mat4 matrix;
-  const std::array axes{turned(Vec3d{1, 0, 0}, options.up), turned(Vec3d{0, 1, 0}, options.up),
-                        turned(Vec3d{0, 0, 1}, options.up)};
+  const std::array axes{turn(turned(Vec3d{1, 0, 0}, options.up)),
+                        turn(turned(Vec3d{0, 1, 0}, options.up)),
+                        turn(turned(Vec3d{0, 0, 1}, options.up))};
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t column = 0; column < 3; ++column)
       matrix.m[4 * row + column] = scale * axes[column][static_cast<int>(row)];
@@ -246,11 +306,19 @@ Mat4 model_to_world(const MeshExtent& file, const NormaliseOptions& options) {
   return matrix;
 }
 
-Box normalised_box(const MeshExtent& file, const NormaliseOptions& options) {
+Box normalised_box(const MeshExtent& file, const NormaliseOptions& options, double lowest) {
   const MeshExtent mesh = turned(file, options.up);
   const double scale = scale_of(mesh.box, options);
-  const Vec3d centre = centre_of(mesh, options), ground = ground_of(options);
-  return {(mesh.box.least - centre) * scale + ground, (mesh.box.most - centre) * scale + ground};
+  const Vec3d centre = centre_of_upright(mesh, options, lowest), ground = ground_of(options);
+  if (!turns(options))
+    return {(mesh.box.least - centre) * scale + ground, (mesh.box.most - centre) * scale + ground};
+  const Turner turn(options);
+  std::vector<Vec3d> corners;
+  for (const double x : {mesh.box.least.x, mesh.box.most.x})
+    for (const double y : {mesh.box.least.y, mesh.box.most.y})
+      for (const double z : {mesh.box.least.z, mesh.box.most.z})
+        corners.push_back((turn({x, y, z}) - centre) * scale + ground);
+  return bounds(corners);
 }
 
 }  // namespace ds

@@ -4,6 +4,7 @@
 #include "tracer/base/degrees.h"
 #include "tracer/base/error.h"
 #include "tracer/kernels/layout.h"
+#include "tracer/scene/colour_temperature.h"
 #include "tracer/scene/type_tables.h"
 
 #include <algorithm>
@@ -48,11 +49,11 @@ void turn(Scene& scene, double degrees) {
       texture.world_to_texture = texture.world_to_texture * back;
 }
 
-Vec3 times(Vec3 color, double gain) {
+Vec3 times(Vec3 color, Vec3d gain) {
   return to_float(to_double(color) * gain);
 }
 
-void brighten(Scene& scene, double gain) {
+void brighten(Scene& scene, Vec3d gain) {
   for (Light& light : scene.lights)
     light.color = times(light.color, gain);
   for (Material& material : scene.materials) {
@@ -76,8 +77,15 @@ void brighten(Scene& scene, double gain) {
 
 Scene changed(Scene scene, const EnvironmentChange& change) {
   if (change.turn_deg != 0) turn(scene, change.turn_deg);
-  if (change.gain != 1) brighten(scene, change.gain);
+  const Vec3d gain{change.gain, change.gain, change.gain};
+  if (is_gain(change))
+    brighten(scene,
+             change.temperature_k == 0 ? gain : black_body_colour(change.temperature_k) * gain);
   return scene;
+}
+
+bool is_gain(const EnvironmentChange& change) {
+  return change.gain != 1 || change.temperature_k != 0;
 }
 
 bool gain_changes_program(const Scene& scene) {

@@ -9,6 +9,8 @@ namespace ds {
 struct EnvironmentChange {
   double turn_deg = 0;  ///< about the z axis, counter-clockwise seen from above; |turn_deg| <= 1e6
   double gain = 1;      ///< factor on all its light, > 0
+  /// Of a black body whose colour, of luminance 1, is a factor on all its light; in [1667, 25000], or 0: none.
+  double temperature_k = 0;
 
   bool operator==(const EnvironmentChange&) const = default;
 };
@@ -18,7 +20,9 @@ struct EnvironmentChange {
 /// `scene` where nothing changes.
 Scene changed(Scene scene, const EnvironmentChange& change);
 
-/// Whether a gain makes another program of it: of a texture that emits, a product.
+/// Whether a change of its light makes another program of it: of a texture that emits, a product.
 bool gain_changes_program(const Scene& scene);
+/// Whether the change is of light.
+bool is_gain(const EnvironmentChange& change);
 
 }  // namespace ds

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,65 @@ class DrawsTest : public TinyDataset {
 const char* const k_drawn_keys[] = {
     "camera.fov_deg",       "camera.distance_m",     "camera.roll_deg",  "camera.azimuth_deg",
     "camera.elevation_deg", "environments.turn_deg", "environments.gain"};
+
+// What moves the model is of its part, so that masks follow; colour is the picture's alone.
+TEST_F(DrawsTest, WhatIsDrawnOfModelsAndLightIsInTheirParts) {
+  const Plan before = plan();
+  const auto compare = [&](const std::string& setting, std::size_t part, bool masks) {
+    request.overrides = {setting};
+    const Plan after = plan();
+    for (std::size_t i = 0; i < after.images.size(); ++i) {
+      const ImageKeys &a = before.images[i].keys, &b = after.images[i].keys;
+      EXPECT_NE(a.render, b.render) << setting;
+      EXPECT_NE(a.parts[part], b.parts[part]) << setting;
+      for (std::size_t other = 0; other < 5; ++other)
+        if (other != part) {
+          EXPECT_EQ(a.parts[other], b.parts[other]) << setting << other;
+        }
+      for (std::size_t o = 0; o < a.outputs.size(); ++o)
+        if (a.outputs[o].plane != nullptr) {
+          EXPECT_EQ(a.outputs[o].key != b.outputs[o].key, masks) << setting;
+        }
+    }
+  };
+  compare("models.turn={rotation=\"up\"}", 0, true);
+  compare("models.turn={rotation=\"any\"}", 0, true);
+  compare("models.turn=[1,0,0,1]", 0, true);
+  compare("models.place_m={disc=[0.01,0.05]}", 0, true);
+  compare("models.size_m={log_uniform=[0.1,0.15]}", 0, true);
+  compare("environments.temperature_k={uniform=[3000,8000]}", 3, false);
+}
+
+TEST_F(DrawsTest, ATurnOfNothingAndAPlaceOfNothingAreNone) {
+  const auto none = render_keys({});
+  for (const char* key :
+       {"models.turn=[0.5,0,0,0]", "models.turn={choice=[[1,0,0,0]]}", "models.place_m={disc=0}",
+        "models.turn=\"none\"", "models.size_m={uniform=[0.16,0.16]}",
+        "environments.temperature_k=false"})
+    EXPECT_EQ(render_keys({key}), none) << key;
+  EXPECT_EQ(render_keys({"models.turn=[0.3,0,0,-0.4]"}),
+            render_keys({"models.turn={choice=[[0.6,0,0,-0.8]]}"}));
+}
+
+// A size is a thing's, a turn an image's, unless the recipe says otherwise.
+TEST_F(DrawsTest, AKeySaysForWhatItIsDrawn) {
+  request.overrides = {"models.size_m={uniform=[0.1,0.2]}", "models.turn={rotation=\"up\"}"};
+  std::map<std::string, std::set<double>> sizes, turns;
+  for (const PlannedImage& image : plan().images) {
+    const Variables& values = image.spec.variables->values;
+    sizes[*image.spec.model_name].insert(values.model_size_m);
+    turns[*image.spec.model_name].insert(values.model_turn[0]);
+  }
+  for (const auto& [model, values] : sizes)
+    EXPECT_EQ(values.size(), 1U) << model;
+  for (const auto& [model, values] : turns)
+    EXPECT_GT(values.size(), 1U) << model;
+  request.overrides = {"models.size_m={uniform=[0.1,0.2],per=\"view\"}"};
+  std::set<double> all;
+  for (const PlannedImage& image : plan().images)
+    all.insert(image.spec.variables->values.model_size_m);
+  EXPECT_GT(all.size(), sizes.size());
+}
 
 // Only the value counts, not what it was drawn from.
 TEST_F(DrawsTest, ADistributionOfOneValueHasThatValuesKeys) {

@@ -116,7 +116,14 @@ TEST_F(KeysTest, EachSettingMovesWhatItCanChangeAndNothingElse) {
   };
   const Case cases[] = {
       {"model", [&] { image_.model_file = other_model; }, {true, true, true}, 0},
-      {"size", [&] { recipe_.normalise.size_m = 0.2; }, {true, true, true}, 0},
+      {"size",
+       [&] {
+         ImageVariables variables = *image_.variables;
+         variables.values.model_size_m = 0.2;
+         image_.variables = variables;
+       },
+       {true, true, true},
+       0},
       {"crease", [&] { recipe_.normalise.crease_deg = 10; }, {true, false, true}, 0},
       {"material",
        [&] {

@@ -393,5 +393,92 @@ TEST(ModelToWorld, IsWhatTheRecipeSays) {
   EXPECT_EQ(normalised_box(file, options), (Box{{-2, -1, 0.5}, {2, 1, 8.5}}));
 }
 
+constexpr double k_half = 0.70710678118654752;
+
+TEST(Normalise, TurnsTheModelAndPutsItOnTheGround) {
+  // 2 wide, 4 high, 1 deep, its least corner at the origin. A quarter about x lays it on its back: the
+  // height, which chose the size, becomes -y.
+  const FileMesh source = model(box_off(2, 4, 1));
+  NormaliseOptions options;
+  options.size_m = 4;
+  options.ground_z_m = 0.5;
+  options.centre = Centring::box;
+  options.turn = {k_half, k_half, 0, 0};
+  options.place_m = {10, 20, 0.25};
+  EXPECT_TRUE(turns(options) && tilts(options));
+  const Bounds<Vec3> lying = bounds(normalise(source, options));
+  expect_near(lying.least, {9, 18, 0.75F}, 2e-6);
+  expect_near(lying.most, {11, 22, 1.75F}, 2e-6);
+  // A quarter about the vertical swaps width and depth.
+  options.turn = {k_half, 0, 0, k_half};
+  EXPECT_TRUE(turns(options) && !tilts(options));
+  const Bounds<Vec3> standing = bounds(normalise(source, options));
+  expect_near(standing.least, {9.5F, 19, 0.75F}, 2e-6);
+  expect_near(standing.most, {10.5F, 21, 4.75F}, 2e-6);
+  // Where the file's height stays, it turns about its middle at height 0.
+  options.place_on_ground = false;
+  options.turn = {k_half, k_half, 0, 0};
+  const Bounds<Vec3> left = bounds(normalise(source, options));
+  expect_near(left.least, {9, 16, -0.25F}, 2e-6);
+  expect_near(left.most, {11, 20, 0.75F}, 2e-6);
+}
+
+TEST(ModelToWorld, IsWhatNormaliseDoesToATurnedMesh) {
+  const FileMesh source = model(sheet_off());
+  NormaliseOptions options;
+  for (const bool on_ground : {false, true})
+    for (const std::array<double, 4>& turn :
+         {std::array<double, 4>{0.5, 0.5, -0.5, 0.5}, {0.8, 0, 0, -0.6}, {0.1, 0.7, -0.1, 0.7}})
+      for (const Centring centre : {Centring::none, Centring::box, Centring::mass}) {
+        options.place_on_ground = on_ground;
+        options.turn = turn;
+        options.centre = centre;
+        options.place_m = {0.5, -0.25, 1};
+        const Mesh mesh = normalise(source, options);
+        const double lowest = lowest_of(source, options);
+        const Mat4 matrix = model_to_world(extent_of(source), options, lowest);
+        const Box around = normalised_box(extent_of(source), options, lowest);
+        Vec3d least{9, 9, 9};
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+          for (std::size_t c = 0; c < 3; ++c) {
+            const Vec3d place = to_double(mesh.positions[mesh.triangles[t][c]]);
+            expect_near(moved(matrix, source.positions[source.triangles[t][c]]), place);
+            for (int axis = 0; axis < 3; ++axis) {
+              EXPECT_GE(place[axis], around.least[axis] - 1e-6);
+              EXPECT_LE(place[axis], around.most[axis] + 1e-6);
+            }
+            least.z = std::min(least.z, place.z);
+          }
+        if (on_ground) {
+          EXPECT_NEAR(least.z, options.ground_z_m + 1, 1e-7);
+        }
+        // The size is that of the upright mesh: lengths stay.
+        NormaliseOptions still = options;
+        still.turn = NormaliseOptions{}.turn;
+        const Mesh upright = normalise(source, still);
+        const auto side = [](const Mesh& m) {
+          return length(to_double(m.positions[m.triangles[0][0]]) -
+                        to_double(m.positions[m.triangles[0][1]]));
+        };
+        EXPECT_NEAR(side(mesh), side(upright), 1e-7);
+      }
+}
+
+TEST(Normalise, NormalsTurnWithTheModel) {
+  const FileMesh source = model(box_off(2, 4, 1));
+  for (const Normals normals : {Normals::smooth, Normals::flat}) {
+    NormaliseOptions options;
+    options.normals = normals;
+    const Mesh before = normalise(source, options);
+    options.turn = {k_half, 0, 0, k_half};
+    const Mesh after = normalise(source, options);
+    ASSERT_EQ(before.normals.size(), after.normals.size());
+    for (std::size_t i = 0; i < before.normals.size(); ++i) {
+      const Vec3 n = before.normals[i];
+      expect_near(after.normals[i], {-n.y, n.x, n.z}, 1e-6);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ds

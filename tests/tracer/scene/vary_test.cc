@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/scene/vary.h"
 
+#include "tracer/scene/colour_temperature.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
 
@@ -82,6 +83,16 @@ TEST(Changed, AGainIsAFactorOnEverythingThatShines) {
   EXPECT_EQ(dimmed.textures[1].inputs[1].constant, (Vec3{0.5F, 0.5F, 0.5F}));
   EXPECT_TRUE(gain_changes_program(shining));
   EXPECT_FALSE(gain_changes_program(before));
+}
+
+TEST(Changed, ATemperatureIsAFactorOnColours) {
+  const Scene before = read_environment(k_environments / "studio");
+  const Scene after = changed(before, {0, 2, 3000});
+  const Vec3d tint = black_body_colour(3000);
+  for (std::size_t i = 0; i < before.lights.size(); ++i)
+    EXPECT_EQ(after.lights[i].color, to_float(to_double(before.lights[i].color) * tint * 2.0));
+  EXPECT_GT(tint.x, 1.3);
+  EXPECT_LT(tint.z, 0.4);
 }
 
 TEST(Changed, NothingChangesNothing) {
