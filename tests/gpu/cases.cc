@@ -47,6 +47,7 @@ Picture of_scene(std::string name, Scene scene) {
 Picture of_material(const NodeType& type) {
   Scene scene = floor_scene();
   const int material = add_material(scene, type.name);
+  make_seen(scene, material);
   add_object(scene, sphere({0, 0, 0}, 0.34f, 9, true), material, k_model_object_id);
   scene.lights.push_back(point_light({-1, -1, 2}, {3, 2.5f, 2}));
   scene.lights.push_back(constant_light({0.2f, 0.25f, 0.3f}));

@@ -110,8 +110,22 @@ int add_mix(Scene& scene, int first, int second) {
   return mix;
 }
 
+void set_alpha(Scene& scene, int material, float alpha) {
+  const int row = scene.materials[static_cast<std::size_t>(material)].type;
+  const float root = std::sqrt(alpha);
+  for (const auto& [input, value] :
+       {std::pair{"uroughness", alpha}, {"vroughness", alpha}, {"roughness", root}})
+    if (find_input(material_types()[static_cast<std::size_t>(row)], input) >= 0)
+      pictures::set_input(scene, material, input, {value, value, value});
+}
+
 int add_material(Scene& scene, std::string_view type) {
-  if (type != "mix") return pictures::add_material(scene, type);
+  if (type != "mix") {
+    const int material = pictures::add_material(scene, type);
+    pictures::make_seen(scene, material);
+    set_alpha(scene, material, 0.1f);  // the default of those that have one
+    return material;
+  }
   const int metal = pictures::add_material(scene, "metal2");
   const int matte = pictures::add_material(scene, "matte");
   const int mirror = pictures::add_material(scene, "mirror");
@@ -132,8 +146,9 @@ std::vector<int> add_white_materials(Scene& scene, float u_roughness, float v_ro
   std::vector<int> added;
   const std::size_t before = scene.materials.size();
   for (const std::string& name : materials(false)) {
-    // A layer of fibres over black gives back a part of the light whatever its colour.
-    if (name != "velvet") added.push_back(add_material(scene, name));
+    // A layer of fibres over black gives back a part of the light whatever its colour, and so do
+    // disney's parts together.
+    if (name != "velvet" && name != "disney") added.push_back(add_material(scene, name));
   }
   for (std::size_t i = before; i < scene.materials.size(); ++i) {
     const NodeType& type = material_types()[static_cast<std::size_t>(scene.materials[i].type)];

@@ -41,6 +41,8 @@ std::vector<std::string> materials(bool with_transparent);
 /// one of metal2 with a mix of matte and mirror (as materials::all() of tests/tracer/kernels has
 /// it).
 int add_material(Scene& scene, std::string_view type);
+/// Of its lobes.
+void set_alpha(Scene& scene, int material, float alpha);
 /// A mix of these two in equal shares; its index.
 int add_mix(Scene& scene, int first, int second);
 

@@ -22,11 +22,7 @@ Picture plate(const std::string& material, bool from_above, int spp) {
   Picture p = hard::deep_picture(8, spp);
   p.name = fmt::format("{} from {}", material, from_above ? "above" : "below");
   hard::add_material(p.scene, material);
-  for (const char* input : {"uroughness", "vroughness"})
-    if (find_input(material_types()[static_cast<std::size_t>(p.scene.materials.back().type)],
-                   input) >= 0)
-      pictures::set_input(p.scene, static_cast<int>(p.scene.materials.size()) - 1, input,
-                          {0.5f, 0.5f, 0.5f});
+  hard::set_alpha(p.scene, static_cast<int>(p.scene.materials.size()) - 1, 0.5f);
   pictures::add_object(p.scene, pictures::quad({0, 0, 0}, {4, 0, 0}, {0, 4, 0}),
                        static_cast<int>(p.scene.materials.size()) - 1);
   p.engine.depth_total = 1;

@@ -183,10 +183,7 @@ Picture on_a_plane_of(const std::string& material, const std::string& name, int 
   Picture p = on_a_plane(name + " on " + material, 1, pixels, spp);
   p.scene.objects[0].material = hard::add_material(p.scene, material);
   for (std::size_t m = 0; m < p.scene.materials.size(); ++m)
-    for (const char* input : {"uroughness", "vroughness"})
-      if (find_input(material_types()[static_cast<std::size_t>(p.scene.materials[m].type)],
-                     input) >= 0)
-        pictures::set_input(p.scene, static_cast<int>(m), input, {1, 1, 1});
+    hard::set_alpha(p.scene, static_cast<int>(m), 1);
   return p;
 }
 

@@ -32,6 +32,7 @@ std::vector<float> inputs_of(const NodeType& type, float u, float v, Numbers& nu
     for (int i = 0; i < input.width; ++i)
       p.push_back(input.name == "uroughness"   ? u
                   : input.name == "vroughness" ? v
+                  : input.name == "roughness"  ? std::sqrt(u)
                   : input.width == 3 ? input.default_value * (0.2f + 0.8f * numbers.next())
                                      : input.default_value);
   for (const NumberType& number : type.numbers)

@@ -3,6 +3,7 @@
 
 #include "tracer/render/render.h"
 #include "tracer/scene/scene.h"
+#include "tracer/scene/type_tables.h"
 
 #include <cstdint>
 #include <string>
@@ -28,6 +29,11 @@ int add_material(Scene& scene, std::string_view type);
 int add_matte(Scene& scene, Vec3 kd);
 /// Sets input `name` of a material to a constant.
 void set_input(Scene& scene, int material, std::string_view name, Vec3 value);
+/// What a test gives an input that it says nothing of: the table's default, but of a share that defaults to 0 so much
+/// that it is seen.
+float seen_value(const NodeType& type, std::size_t input);
+/// Sets all inputs to that.
+void make_seen(Scene& scene, int material);
 void add_object(Scene& scene, Mesh mesh, int material, std::uint32_t id = 2);
 /// A texture of this SDL type with the table's defaults, whose colour inputs take `first`; its
 /// index.

@@ -12,7 +12,8 @@
   X("mirror", mirror, MIRROR)             \
   X("glass", glass, GLASS)                \
   X("roughglass", roughglass, ROUGHGLASS) \
-  X("velvet", velvet, VELVET)
+  X("velvet", velvet, VELVET)             \
+  X("disney", disney, DISNEY)
 #define DS_CHOOSING_MATERIALS(X) X("mix", mix, MIX)
 #define DS_ALL_MATERIALS(X) DS_SCATTERING_MATERIALS(X) DS_CHOOSING_MATERIALS(X)
 

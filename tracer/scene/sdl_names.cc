@@ -150,9 +150,10 @@ constexpr std::string_view k_film[] = {"TONEMAP_LINEAR",
 constexpr std::string_view k_texture_names[] = {"mapping", "randomizedtiling", "colorspace",
                                                 "selectionmode"};
 constexpr std::string_view k_material_names[] = {
-    "transparency", "emission",   "bumptex",       "normaltex",     "bumpsamplingdistance",
-    "id",           "visibility", "shadowcatcher", "holdout",       "volume",
-    "photongi",     "cauchyb",    "cauchyc",       "filmthickness", "filmior"};
+    "transparency", "emission",   "bumptex",       "normaltex",  "bumpsamplingdistance",
+    "id",           "visibility", "shadowcatcher", "holdout",    "volume",
+    "photongi",     "cauchyb",    "cauchyc",       "filmamount", "filmthickness",
+    "filmior"};
 constexpr std::string_view k_shape_names[] = {"appliedtransformation", "colors", "alphas"};
 constexpr std::string_view k_object_names[] = {"motion", "bakemap", "colors", "alphas"};
 constexpr std::string_view k_light_names[] = {"volume",

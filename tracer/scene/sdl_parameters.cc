@@ -174,7 +174,7 @@ std::vector<SdlParameter> header_parameters(const NodeType& type) {
                           fmt::format("{}", input.default_value),
                           physical_text(limit_of(input.name)), limit_of(input.name).range});
   for (const NumberType& number : type.numbers) {
-    const InputLimit limit = limit_of(number.name);
+    const InputLimit limit = limit_of_number(number.name);
     parameters.push_back({std::string(number.name), limit.flag ? SdlType::flag : SdlType::number,
                           fmt::format("{}", number.default_value), "",
                           limit.flag ? NumberRange{} : limit.range});

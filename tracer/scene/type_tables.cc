@@ -83,6 +83,12 @@ std::size_t values_before(const LightType& type, std::string_view input) {
   return count;
 }
 
+InputLimit limit_among(std::span<const InputLimit> limits, std::string_view name) {
+  const auto at = std::find_if(limits.begin(), limits.end(),
+                               [&](const InputLimit& limit) { return limit.name == name; });
+  return at == limits.end() ? InputLimit{name} : *at;
+}
+
 template <typename Row>
 int find_named(std::span<const Row> rows, std::string_view name) {
   const auto found =
@@ -110,14 +116,29 @@ InputLimit limit_of(std::string_view name) {
       {"uroughness", k_share},
       {"vroughness", k_share},
       {"amount", k_share},
+      {"basecolor", k_share, false, k_share},
+      {"subsurface", k_share},
+      {"roughness", k_share},
+      {"metallic", k_share},
+      {"specular", k_share},
+      {"speculartint", k_share},
+      {"clearcoat", k_share},
+      {"clearcoatgloss", k_share},
+      {"anisotropic", k_share},
+      {"sheen", k_share},
+      {"sheentint", k_share},
       {"thickness", k_not_negative},
+  };
+  return limit_among(k_limits, name);
+}
+
+InputLimit limit_of_number(std::string_view name) {
+  static constexpr InputLimit k_limits[] = {
       {"channel", {.least = -1, .most = 2}},
       {"octaves", {.least = 0, .most = 32}},  // a sample pays for each
-      {"doublesided", k_share, true},
+      {"doublesided", {.least = 0, .most = 1}, true},
   };
-  const auto at = std::find_if(std::begin(k_limits), std::end(k_limits),
-                               [&](const InputLimit& limit) { return limit.name == name; });
-  return at == std::end(k_limits) ? InputLimit{name} : *at;
+  return limit_among(k_limits, name);
 }
 
 std::string header_comment(std::string_view folder, std::string_view prefix) {

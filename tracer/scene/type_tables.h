@@ -11,7 +11,8 @@
 
 namespace ds {
 
-/// What a constant of this name is limited to, whatever type has it; by default any number is right.
+/// What a constant input, and a fixed number, of this name is limited to, whatever type has it; by default any number is
+/// right.
 struct InputLimit {
   std::string_view name;
   NumberRange range{};
@@ -19,6 +20,7 @@ struct InputLimit {
   NumberRange physical{};  ///< a share of light: what is outside of it is read, and warned of
 };
 InputLimit limit_of(std::string_view name);
+InputLimit limit_of_number(std::string_view name);
 
 /// An input that takes a constant or a texture. `width` is 1 (scalar) or 3 (colour).
 struct InputType {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/tracer/kernels/materials.h"
 
+#include "tests/render/pictures.h"
 #include "tests/tracer/kernels/mix_on_host.h"
 #include "tracer/kernels/lists.h"
 #include "tracer/kernels/prepared.h"
@@ -33,6 +34,16 @@ float least(std::string_view name) {
   if (name.ends_with("ior")) return 1;
   if (is_coefficient(name)) return -30;
   return 0;
+}
+
+/// Disney's alpha is the square of its roughness.
+float roughness_of(const InputType& input, float alpha) {
+  return input.name == "roughness" ? std::sqrt(alpha) : alpha;
+}
+
+float seen_value(const Case& material, const InputType& input) {
+  return pictures::seen_value(*material.type,
+                              static_cast<std::size_t>(&input - material.type->inputs.data()));
 }
 
 /// Numbers stand behind inputs, at their defaults.
@@ -73,18 +84,17 @@ std::vector<Case> all() {
   return cases;
 }
 
-std::vector<float> inputs(const Case& material, float roughness) {
+std::vector<float> inputs(const Case& material, float alpha) {
   return fill(material, [&](const InputType& input) {
-    return is_roughness(input.name) ? roughness : input.default_value;
+    return is_roughness(input.name) ? roughness_of(input, alpha) : seen_value(material, input);
   });
 }
 
-std::vector<float> white_inputs(const Case& material, float roughness) {
+std::vector<float> white_inputs(const Case& material, float alpha) {
   return fill(material, [&](const InputType& input) {
-    if (is_roughness(input.name)) return roughness;
-    const bool reflectance =
-        input.width == 3 && input.name.size() == 2 && input.name[0] == 'k' && input.name != "ka";
-    return reflectance ? 1.0f : input.default_value;
+    if (is_roughness(input.name)) return roughness_of(input, alpha);
+    const bool reflectance = input.width == 3 && (limit_of(input.name).physical.most == 1);
+    return reflectance ? 1.0f : seen_value(material, input);
   });
 }
 

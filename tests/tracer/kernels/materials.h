@@ -31,10 +31,10 @@ inline void PrintTo(const Case& material, std::ostream* out) {
 /// over its parts, a sample's weight and pdf are those of the part it chose.
 std::vector<Case> all();
 
-/// The table's defaults in the layout the functions take, with every roughness set to `roughness`.
-std::vector<float> inputs(const Case& material, float roughness);
-/// All reflectances and transmittances (inputs named k?, three wide, but metal's k) at 1 besides.
-std::vector<float> white_inputs(const Case& material, float roughness);
+/// What pictures::seen_value has, in the layout the functions take, with every roughness so that a lobe's alpha is this.
+std::vector<float> inputs(const Case& material, float alpha);
+/// All reflectances and transmittances (colours that are shares of light) at 1 besides.
+std::vector<float> white_inputs(const Case& material, float alpha);
 /// Anything a file may say, ends of the ranges included.
 std::vector<float> random_inputs(const Case& material, std::mt19937& random);
 
