@@ -20,7 +20,8 @@ struct Arguments {
   std::string image;   ///< id of an image, or the path of one of its files
   std::vector<std::string> overrides;
   std::string output_folder, store_folder, device;
-  std::string shard = "1/1";
+  std::string database_folder;
+  std::string shard;  ///< empty: all images
   std::uint64_t rerender = 0, seed = 0;
   std::string format, export_folder, gallery_folder, diff_folder, hierarchy;
   std::string import_from, import_psb, import_folder;
@@ -41,10 +42,21 @@ struct Arguments {
   std::string shell, init_file;
   std::string store_task, older, size;
   bool forget = false;
+  int nodes = 0, shards = 0;  ///< 0: not said
+  bool print = false;
+  std::vector<std::string> sbatch_options;
   std::string schema;             ///< which one
   std::string topic, topic_name;  ///< of help
 
-  DatasetRequest request() const { return {target, overrides, output_folder, store_folder, adopt}; }
+  DatasetRequest request() const {
+    return {target,
+            overrides,
+            output_folder,
+            store_folder,
+            adopt,
+            database_folder,
+            !database_folder.empty() && !shard.empty()};
+  }
 };
 
 /// The options a verb can have. Each is declared once, in command_line.cc.
@@ -66,6 +78,7 @@ enum class Option {
   overrides,
   output_folder,
   store_folder,
+  database_folder,
   device,
   json,
   dry_run,
@@ -93,7 +106,8 @@ enum class Option {
   against,
   report_size,  ///< how much is measured
   ids,
-  forecast,  ///< what time and disk are forecast for
+  slurm_jobs,  ///< how many, and their options
+  forecast,    ///< what time and disk are forecast for
 };
 
 /// A verb of the command. `run` returns the exit code: 0 where all is well, 1 where something

@@ -7,6 +7,7 @@
 #include "builder/make/execute.h"
 #include "builder/make/sole_plan.h"
 #include "builder/plan/lacking.h"
+#include "builder/store/store_database.h"
 #include "tracer/base/log.h"
 #include "tracer/base/streams.h"
 
@@ -157,7 +158,7 @@ int run_build(const Arguments& arguments) {
   const BuildOptions build_options{arguments.keep_going, arguments.force, arguments.copy};
   // What the command is for lies in files: a reader of its text who goes away does not end it.
   if (!arguments.dry_run) std::signal(SIGPIPE, SIG_IGN);
-  const Shard shard = read_shard(arguments.shard);
+  const Shard shard = shard_of(arguments);
   RealDisk disk;
   if (arguments.dry_run) {
     Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
@@ -199,6 +200,8 @@ int run_build(const Arguments& arguments) {
     say(Stream::people, "dsbuild: error: {}: {}\n", what, why);
   if (result.stopped)
     say(Stream::people, "dsbuild: stopped; what is finished is recorded, build again to go on\n");
+  if (!arguments.database_folder.empty() && arguments.shard.empty() && !result.disk_failed)
+    put_database(*dataset.store, *dataset.database, arguments.database_folder, disk);
   const std::size_t concerns = tell_concerns(result.concerns, dataset.recipe, arguments.strict);
   if (const std::uint64_t others = result.failed + result.not_reached; others > 0)
     say(Stream::people, "not looked at: {} of {} images, which are not made\n", others,

@@ -166,6 +166,24 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
                       "store to share between datasets [<output>/.dsbuild]")
           ->type_name("DIR");
       return;
+    case Option::database_folder:
+      verb.add_option(
+              "--database", to.database_folder,
+              "keep the store's database and locks in this folder of the machine's own, for a "
+              "store where several machines write; a build of all images leaves a whole copy in "
+              "the store [the store]")
+          ->type_name("DIR");
+      return;
+    case Option::slurm_jobs:
+      add_number(verb, "--nodes", to.nodes, {.least = 1, .most = 65536},
+                 "shares that are made at once, each by a job of one node [as many as there are]");
+      add_number(verb, "--shards", to.shards, {.least = 1, .most = 65536},
+                 "shares of the images, each a job of the array [4 a node, or 8]");
+      verb.add_flag("--print", to.print,
+                    "write the script to standard output, which submits itself where it is run");
+      verb.add_option("SBATCH", to.sbatch_options,
+                      "options of sbatch for all jobs, behind -- (-- --time=2:00:00 --mem=8G)");
+      return;
     case Option::device:
       verb.add_option(
               "--device", to.device,

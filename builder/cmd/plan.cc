@@ -167,7 +167,7 @@ void print_answer(const Answer& answer, const Calibration& calibration) {
 
 int run_plan(const Arguments& arguments) {
   const Wish wish = wish_of(arguments);
-  const Shard shard = read_shard(arguments.shard);
+  const Shard shard = shard_of(arguments);
   RealDisk disk;
   Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
   if (wish.all_images() && !dataset.recipe.outputs.image)

@@ -15,6 +15,10 @@ Stamps stamps_of(const Arguments& arguments) {
   return arguments.rehash ? Stamps::ignore : Stamps::trust;
 }
 
+Shard shard_of(const Arguments& arguments) {
+  return arguments.shard.empty() ? Shard{} : read_shard(arguments.shard);
+}
+
 const char* step_of(const PlannedImage& image) {
   if (!image.stale()) return "";
   if (image.traces_paths() || image.trace_planes) return "trace";

@@ -14,6 +14,8 @@ namespace ds {
 
 /// What --rehash says.
 Stamps stamps_of(const Arguments& arguments);
+/// What --shard says.
+Shard shard_of(const Arguments& arguments);
 
 /// A plan in numbers, of the shard's images.
 struct PlanCounts {

@@ -3,6 +3,7 @@
 
 #include "builder/cmd/command_line.h"
 #include "builder/cmd/help_text.h"
+#include "builder/cmd/shell_quoted.h"
 #include "manifests/check/check.h"
 #include "manifests/export/exporter.h"
 #include "tracer/base/error.h"
@@ -88,14 +89,6 @@ std::string escaped(std::string_view text, std::string_view special) {
     result += c;
   }
   return result;
-}
-
-/// In single quotes, for any of the three shells.
-std::string shell_quoted(std::string_view text) {
-  std::string result = "'";
-  for (const char c : text)
-    result += c == '\'' ? "'\\''" : std::string(1, c);
-  return result + "'";
 }
 
 /// For the one line that shells show: what stands before the first semicolon or bracket.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/progress.h"
+#include "builder/cmd/slurm_state.h"
 #include "builder/cmd/verbs.h"
 #include "builder/plan/plan.h"
 #include "builder/store/build_ending.h"
@@ -45,7 +46,7 @@ nlohmann::json ending_json(const BuildRow& build) {
 }  // namespace
 
 int run_status(const Arguments& arguments) {
-  const Shard shard = read_shard(arguments.shard);
+  const Shard shard = shard_of(arguments);
   RealDisk disk;
   Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
   Inputs inputs(*dataset.database, stamps_of(arguments));
@@ -54,6 +55,8 @@ int run_status(const Arguments& arguments) {
   const std::vector<BuildRow> builds = dataset.database->builds(dataset.row.id);
   std::optional<BuildRow> last;
   if (!builds.empty()) last = as_ended(dataset, builds.front());
+  const std::optional<SlurmMark> mark =
+      dataset.store ? find_slurm_mark(*dataset.store) : std::nullopt;
   const std::string store = dataset.store ? dataset.store->folder().string() : "";
   if (arguments.json) {
     nlohmann::json object = to_json(counts);
@@ -64,6 +67,8 @@ int run_status(const Arguments& arguments) {
     object["store"] = store;
     object["builds"] = builds.size();
     object["last_build"] = last ? ending_json(*last) : nlohmann::json();
+    object["slurm"] = mark ? to_json(*mark) : nlohmann::json();
+    object["kept"] = counts.up_to_date + counts.place;
     print_json(object);
     return counts.failed > 0 ? 1 : 0;
   }
@@ -74,6 +79,9 @@ int run_status(const Arguments& arguments) {
     say(Stream::result, "build    {} UTC, {}\n", last->started_at, ending_text(*last));
   else
     say(Stream::result, "build    {}\n", why_never(dataset));
+  if (mark)
+    say(Stream::result, "slurm    {}; {} of {} images are kept\n", to_text(*mark),
+        counts.up_to_date + counts.place, counts.images);
   say(Stream::result, "{}\n", summary(counts));
   print_manifest_line(plan);
   return counts.failed > 0 ? 1 : 0;

@@ -23,6 +23,7 @@ int run_schema(const Arguments& arguments);
 int run_init(const Arguments& arguments);
 int run_completions(const Arguments& arguments);
 int run_help(const Arguments& arguments);
+int run_slurm(const Arguments& arguments);
 int run_store(const Arguments& arguments);
 int run_clean(const Arguments& arguments);
 int run_log(const Arguments& arguments);

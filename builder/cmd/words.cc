@@ -191,6 +191,8 @@ class Walk {
     std::vector<std::string> known;
     for (const CLI::Option* option : verb_->get_options())
       if (option->get_positional()) known.push_back(option->get_name());
+    for (const CLI::Option* option : verb_->get_options())
+      if (option->get_positional() && option->get_items_expected_max() > 1) return;
     for (std::size_t i = 0; i < std::min(positionals_.size(), known.size()); ++i)
       if (positionals_[i].empty())
         fail(ErrorKind::usage, "{}: wanted {}, found nothing in its quotes", owner(), known[i]);

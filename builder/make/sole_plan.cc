@@ -29,7 +29,7 @@ std::string who_builds(const Dataset& dataset) {
 SolePlan make_sole_plan(Dataset& dataset, Stamps stamps, bool force, Shard shard,
                         const std::function<void(const std::string& who)>& waits_for) {
   SolePlan sole;
-  sole.lock = std::make_unique<FolderLock>(dataset.folder);
+  sole.lock = std::make_unique<FolderLock>(dataset.lock_folder);
   const auto plan = [&] {
     sole.inputs = std::make_unique<Inputs>(*dataset.database, stamps);
     sole.plan = make_plan(dataset, *sole.inputs, force, shard);

@@ -20,6 +20,7 @@ class Claims {
  public:
   /// Opens or makes the file. Throws Error(io).
   explicit Claims(const std::filesystem::path& file) : file_(file) {}
+  const std::filesystem::path& file() const { return file_.file(); }
 
   /// Held until it goes.
   class Claim {

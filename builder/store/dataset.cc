@@ -3,6 +3,7 @@
 
 #include "builder/store/folder_lock.h"
 #include "builder/store/input_folders.h"
+#include "builder/store/slurm_mark.h"
 #include "builder/store/store_database.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
@@ -166,6 +167,12 @@ fs::path folder_of(const DatasetRequest& request, const Recipe& recipe) {
   return request.output_folder.empty() ? default_folder(recipe) : normal(request.output_folder);
 }
 
+/// Beside a database of the machine's own, since the folder's file system may know no locks.
+fs::path lock_folder_of(const DatasetRequest& request, const fs::path& folder) {
+  return request.database_folder.empty() ? folder / k_state_folder
+                                         : normal(request.database_folder);
+}
+
 /// Throws where the folder belongs to another recipe.
 void check_owner(const DatasetRequest& request, const fs::path& folder, const Recipe& recipe,
                  const std::optional<Pointer>& pointer, Database* database) {
@@ -224,10 +231,19 @@ class WorkingFolder {
   fs::path before_;
 };
 
-void open_store(Dataset& dataset, const fs::path& folder, Access access, Disk& disk) {
+void open_store(Dataset& dataset, const fs::path& folder, const DatasetRequest& request,
+                Access access, Disk& disk) {
   dataset.store = std::make_unique<Store>(folder, disk);
-  if (access != Access::build && is_read_only(folder)) {
-    dataset.database = open_database_copy(*dataset.store);
+  if (!request.database_folder.empty()) {
+    const fs::path own = normal(request.database_folder);
+    dataset.claims = std::make_unique<Claims>(own / "lock");
+    dataset.database = open_local_database(*dataset.store, *dataset.claims, own);
+    return;
+  }
+  // What fills the store from several machines keeps no database in it.
+  const bool is_filled = find_slurm_mark(*dataset.store).has_value();
+  if (access != Access::build && (is_filled || is_read_only(folder))) {
+    dataset.database = open_database_copy(*dataset.store, is_filled);
     return;
   }
   dataset.claims = std::make_unique<Claims>(folder / "lock");
@@ -247,7 +263,7 @@ void note_folder(const Store& store, const Pointer& pointer, Disk& disk) {
 /// each, and one recipe.
 Pointer enter_folder(const Dataset& dataset, const DatasetRequest& request, Pointer pointer,
                      Disk& disk) {
-  FolderLock lock(dataset.folder);
+  FolderLock lock(dataset.lock_folder);
   const FolderLock::Gate gate(lock);
   const std::optional<Pointer> known = read_pointer(dataset.folder, true);
   check_owner(request, dataset.folder, dataset.recipe, known, dataset.database.get());
@@ -260,7 +276,7 @@ Pointer enter_folder(const Dataset& dataset, const DatasetRequest& request, Poin
         other && other->id == known->id && other->store == pointer.store)
       pointer.id = new_id();
   if (known != pointer) write_pointer(dataset.folder, pointer, disk);
-  note_folder(*dataset.store, pointer, disk);
+  if (!request.in_passing) note_folder(*dataset.store, pointer, disk);
   return pointer;
 }
 
@@ -298,6 +314,7 @@ Dataset open_folder(const DatasetRequest& request, Access access, Disk& disk) {
     fail(ErrorKind::usage, "-o needs a recipe, found the folder {}", request.target.string());
   Dataset dataset;
   dataset.folder = normal(request.target);
+  dataset.lock_folder = lock_folder_of(request, dataset.folder);
   const std::optional<Pointer> pointer = read_pointer(dataset.folder);
   if (!pointer && has_lost_state(dataset.folder))
     fail(ErrorKind::usage,
@@ -313,7 +330,7 @@ Dataset open_folder(const DatasetRequest& request, Access access, Disk& disk) {
     fail(ErrorKind::io,
          "{}: its store {} is not there; put it back, or build the recipe with -o and --store",
          dataset.folder.string(), pointer->store.string());
-  open_store(dataset, pointer->store, access, disk);
+  open_store(dataset, pointer->store, request, access, disk);
   const std::optional<DatasetRow> row = dataset.database->find_dataset(pointer->id);
   if (!row)
     fail(ErrorKind::io, "{}: the store {} knows nothing of it; build its recipe again",
@@ -370,6 +387,7 @@ Dataset open_recipe(const DatasetRequest& request, Access access, Disk& disk) {
   Dataset dataset;
   dataset.recipe = read_recipe(request.target, request.overrides);
   dataset.folder = folder_of(request, dataset.recipe);
+  dataset.lock_folder = lock_folder_of(request, dataset.folder);
   if (access != Access::inputs) {
     check_no_input_folder(dataset.folder, request.output_folder.empty() ? "dataset.name" : "-o",
                           dataset.recipe);
@@ -389,7 +407,7 @@ Dataset open_recipe(const DatasetRequest& request, Access access, Disk& disk) {
   if (access != Access::build && !has_store)
     dataset.database = std::make_unique<Database>(fs::path());
   else
-    open_store(dataset, pointer.store, access, disk);
+    open_store(dataset, pointer.store, request, access, disk);
   if (access != Access::inputs)
     check_owner(request, dataset.folder, dataset.recipe, known, dataset.database.get());
   if (access == Access::build) pointer = enter_folder(dataset, request, pointer, disk);

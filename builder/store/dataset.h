@@ -24,6 +24,10 @@ struct DatasetRequest {
   /// --store; empty: as before, at first <output folder>/.dsbuild.
   std::filesystem::path store_folder;
   bool adopt = false;  ///< --adopt: take the folder though it belongs to another recipe
+  /// --database: where the store's database and locks are kept in place of the store; empty: in it.
+  std::filesystem::path database_folder{};
+  /// The folder is thrown away: the store is not told where it lies.
+  bool in_passing = false;
 };
 
 enum class Access {
@@ -41,8 +45,9 @@ struct Dataset {
   Recipe recipe;
   std::filesystem::path folder;  ///< absolute
   DatasetRow row;
-  std::unique_ptr<Claims> claims;  ///< null where there is no store yet, or no writing to it
-  std::unique_ptr<Store> store;    ///< null where there is no store yet
+  std::filesystem::path lock_folder;  ///< where builds of the folder lock each other out
+  std::unique_ptr<Claims> claims;     ///< null where there is no store yet, or no writing to it
+  std::unique_ptr<Store> store;       ///< null where there is no store yet
   std::unique_ptr<Database> database;
 };
 

@@ -26,8 +26,7 @@ void write_who(int descriptor, const std::string& who) {
 
 }  // namespace
 
-FolderLock::FolderLock(const std::filesystem::path& folder)
-    : file_(folder / ".dsbuild" / "build") {}
+FolderLock::FolderLock(const std::filesystem::path& folder) : file_(folder / "build") {}
 
 FolderLock::Gate::Gate(FolderLock& lock) : lock_(lock) {
   lock_.file_.take(LockFile::Lock::exclusive, k_gate);

@@ -11,11 +11,11 @@ namespace ds {
 
 /// Builds of one dataset's folder: any number at once that make the same of it (shards, or a build
 /// started twice), else one after another, since each would remove what the others make. On the
-/// file `.dsbuild/build`, whose text names who builds. Byte 0 is held while a build joins or enters
+/// file `build` of `.dsbuild`, whose text names who builds. Byte 0 is held while a build joins or enters
 /// the folder, byte 1 + k by those who make plan number k.
 class FolderLock {
  public:
-  /// Makes the folder. Throws Error(io).
+  /// `folder`: Dataset::lock_folder, which it makes. Throws Error(io).
   explicit FolderLock(const std::filesystem::path& folder);
 
   /// Held while the folder's owner is looked at and entered.

@@ -67,7 +67,9 @@ void clean_up_killed_builds(Dataset& dataset, std::int64_t current) {
   if (!any) return;
   remove_temporaries(dataset.folder / "images");
   remove_temporaries(dataset.folder / "manifest");
-  remove_temporaries(dataset.store->folder());
+  // Where the store has no locks of its own, other machines write to it.
+  if (dataset.claims->file().parent_path() == dataset.store->folder())
+    remove_temporaries(dataset.store->folder());
 }
 
 }  // namespace ds

@@ -30,12 +30,13 @@ void set_aside(const fs::path& file) {
     fs::remove(file.string() + side, error);
 }
 
+/// Enters what records tell of and the database does not know.
 void refill(Database& database, Store& store) {
   Transaction transaction(database.connection());
   store.visit_records([&](const std::string& text) {
     try {
       for (const MadeProduct& made : from_record(text))
-        database.put_product(made.product, made.run);
+        if (!database.find_product(made.product.key)) database.put_product(made.product, made.run);
     } catch (const UnreadableRecord& error) {
       warn(error.what());  // of another version: what it tells of is made again
     }
@@ -43,10 +44,8 @@ void refill(Database& database, Store& store) {
   transaction.commit();
 }
 
-}  // namespace
-
-std::unique_ptr<Database> open_database(Store& store, Claims& claims) {
-  const fs::path file = store.folder() / k_database_file;
+/// A damaged one is set aside.
+std::unique_ptr<Database> open_or_renew(const fs::path& file, Claims& claims) {
   claims.share_database();
   std::unique_ptr<Database> database;
   try {
@@ -62,6 +61,27 @@ std::unique_ptr<Database> open_database(Store& store, Claims& claims) {
     database = std::make_unique<Database>(file);
     claims.share_database();
   }
+  return database;
+}
+
+/// With SQLite's log, of which the last parts may lie there alone.
+void copy_database(const Store& store, const fs::path& folder) {
+  std::error_code error;
+  for (const char* side : {"-wal", ""}) {
+    const fs::path name = std::string(k_database_file) + side;
+    if (fs::exists(store.folder() / name, error))
+      fs::copy_file(store.folder() / name, folder / name, fs::copy_options::overwrite_existing,
+                    error);
+    if (error)
+      fail(ErrorKind::io, "{}: cannot copy to {}: {}", (store.folder() / name).string(),
+           folder.string(), error.message());
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Database> open_database(Store& store, Claims& claims) {
+  auto database = open_or_renew(store.folder() / k_database_file, claims);
   // New, set aside, removed or emptied by somebody: the records know what the store holds.
   if (!database->has_products()) refill(*database, store);
   return database;
@@ -71,21 +91,38 @@ std::unique_ptr<Database> open_own_database(const Store& store) {
   return std::make_unique<Database>(store.folder() / k_database_file);
 }
 
-std::unique_ptr<Database> open_database_copy(const Store& store) {
+std::unique_ptr<Database> open_database_copy(Store& store, bool with_records) {
   std::error_code error;
   const fs::path parent = fs::temp_directory_path(error) / fmt::format("dsbuild-{}", ::getuid());
   const fs::path folder = make_process_folder(parent);
-  for (const char* side : {"", "-wal"}) {
-    const fs::path name = std::string(k_database_file) + side;
-    if (fs::exists(store.folder() / name, error))
-      fs::copy_file(store.folder() / name, folder / name, error);
-    if (error)
-      fail(ErrorKind::io, "{}: cannot copy to {}: {}", (store.folder() / name).string(),
-           folder.string(), error.message());
-  }
+  copy_database(store, folder);
   auto database = std::make_unique<Database>(folder / k_database_file);
+  if (with_records) refill(*database, store);
   fs::remove_all(folder, error);  // what is open lives on
   return database;
+}
+
+std::unique_ptr<Database> open_local_database(Store& store, Claims& claims,
+                                              const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(folder / k_database_file, error)) copy_database(store, folder);
+  auto database = open_or_renew(folder / k_database_file, claims);
+  refill(*database, store);  // other machines may have made more
+  return database;
+}
+
+void put_database(const Store& store, Database& database, const fs::path& folder, Disk& disk) {
+  const fs::path whole = folder / (std::string(k_database_file) + ".whole");
+  const fs::path file = store.folder() / k_database_file;
+  disk.remove(whole);
+  database.connection().prepare("VACUUM INTO ?1").bind(1, whole.string()).run();
+  // SQLite would replay a killed process's log into the new file.
+  std::error_code error;
+  if (fs::exists(file.string() + "-wal", error))
+    for (const char* side : {"", "-wal", "-shm"})
+      disk.remove(file.string() + side);
+  disk.copy(whole, file);
+  disk.remove(whole);
 }
 
 bool is_read_only(const fs::path& folder) {

@@ -21,8 +21,20 @@ std::unique_ptr<Database> open_database(Store& store, Claims& claims);
 std::unique_ptr<Database> open_own_database(const Store& store);
 
 /// Opens a copy of the store's database, as whoever may not write there wants it: SQLite has to write
-/// beside a database to read it. What is written to the copy is lost. Throws Error(io).
-std::unique_ptr<Database> open_database_copy(const Store& store);
+/// beside a database to read it. `with_records`: with what the store's records tell of since. What is
+/// written to the copy is lost. Throws Error(io).
+std::unique_ptr<Database> open_database_copy(Store& store, bool with_records = false);
+
+/// Opens or makes the store's database in a folder of this machine's own, for a store on a file system
+/// where several machines write and no database should be: a copy of what the store has of one, and
+/// what its records tell of. `claims` are of that folder. As open_database where it is damaged.
+std::unique_ptr<Database> open_local_database(Store& store, Claims& claims,
+                                              const std::filesystem::path& folder);
+
+/// Puts a whole copy of a database that lies elsewhere in the place of the store's own, which nobody
+/// has open. Throws Error(io).
+void put_database(const Store& store, Database& database, const std::filesystem::path& folder,
+                  Disk& disk);
 
 /// Whether this process may not write into the folder: it is another user's, or its disk is mounted
 /// read-only.

@@ -36,7 +36,7 @@ bool is_as_placed(const fs::path& file, const PlacedFile& placed) {
 }  // namespace
 
 CleanResult clean_dataset(Dataset& dataset, Disk& disk, bool dry_run) {
-  FolderLock lock(dataset.folder);
+  FolderLock lock(dataset.lock_folder);
   if (const auto who = lock.try_join(hash_text("clean"), "dsbuild clean"))
     fail(ErrorKind::usage, "{}: {} builds it now; clean it when that is done",
          dataset.folder.string(), *who);

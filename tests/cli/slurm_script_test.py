@@ -1,0 +1,267 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`dsbuild slurm` without Slurm: its script, its mark, its refusals; a few lines of bash stand for sbatch and squeue."""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+
+from harness import IMAGES, SAMPLES, TinyCase, main
+
+# Jobs 101, 102, ... run at once and to their end, shards one after the other; squeue knows the ids in $FAKE/known.
+SBATCH = r"""#!/bin/bash
+set -euo pipefail
+printf '%s\n' "$*" >>"$FAKE/calls"
+id=$((100 + $(wc -l <"$FAKE/calls")))
+array=
+while [[ $1 == -* ]]; do
+  case $1 in --array=*) array=${1#--array=1-}; array=${array%%%*} ;; esac
+  shift
+done
+[ ! -e "$FAKE/refuse" ] || { echo "sbatch: error: invalid partition" >&2; exit 1; }
+echo $id
+[ ! -e "$FAKE/hold" ] || exit 0
+for task in ${array:+$(seq $array)} ${array:-1}; do
+  [ -z "$array" ] || [ ! -e "$FAKE/done-$task" ] || continue
+  if [ -n "$array" ]; then touch "$FAKE/done-$task"; fi
+  SLURM_JOB_ID=$id SLURM_ARRAY_TASK_ID=$task bash "$@" >>"$FAKE/log-$id" 2>&1 || true
+done
+rm -f "$FAKE"/done-*
+"""
+SQUEUE = r"""#!/bin/bash
+while [ $# -gt 0 ]; do if [ "$1" = --jobs ]; then id=$2; fi; shift; done
+[ ! -e "$FAKE/mute" ] || { echo "slurm_load_jobs error: Unable to contact slurm controller" >&2; exit 1; }
+if grep -qx "$id" "$FAKE/known" 2>/dev/null; then echo RUNNING; exit 0; fi
+echo "slurm_load_jobs error: Invalid job id specified" >&2
+exit 1
+"""
+
+
+class SlurmScriptTest(TinyCase):
+    def setUp(self):
+        super().setUp()
+        self.fake = self.folder / "fake"
+        self.fake.mkdir()
+        for name, text in (("sbatch", SBATCH), ("squeue", SQUEUE), ("scancel", "#!/bin/bash\necho scancel $* >>$FAKE/calls\n")):
+            (self.fake / name).write_text(text)
+            (self.fake / name).chmod(0o755)
+        (self.folder / "local").mkdir()
+        self.environment = {**os.environ, "PATH": f"{self.fake}:/usr/bin:/bin", "FAKE": str(self.fake),
+                            "TMPDIR": str(self.folder / "local")}
+        self.store = self.folder / "it's a store"
+
+    def slurm(self, *arguments, recipe=None, code=0, environment=None):
+        run = self.run_it("slurm", recipe or self.recipe, "-o", self.out, "--store", self.store, "--json", *arguments,
+                          env=environment or self.environment)
+        self.assertEqual(run.code, code, run)
+        return run
+
+    def status(self):
+        run = self.run_it("status", self.recipe, "-o", self.out, "--json", env=self.environment)
+        self.assertEqual(run.code, 0, run)
+        return run.json
+
+    def answers(self, job):
+        """What the builds of a job said of themselves."""
+        lines = [line for line in (self.fake / f"log-{job}").read_text().splitlines() if line.startswith("{")]
+        return [answer for answer in map(json.loads, lines) if "traced" in answer]
+
+    def marks(self):
+        return [path for path in (self.store / "slurm").iterdir() if path.name.isdigit()]
+
+    def assert_as_on_one_machine(self, *settings):
+        self.build(*settings, out=self.folder / "one")
+        self.assertEqual(self.contents(), self.contents(self.folder / "one"))
+        # As after a build on one machine: nothing is left to do, and the folder alone is enough.
+        self.assertEqual(self.run_it("verify", self.out).code, 0)
+        run = self.run_it("build", self.out, "--json")
+        self.assert_counts(run.json, images=IMAGES, built=0, reused=IMAGES)
+
+    def test_shards_and_a_last_job(self):
+        run = self.slurm("--shards", "3", "--nodes", "2")
+        self.assertEqual(run.json["jobs"], ["101", "102"])
+        self.assertEqual((run.json["images"], run.json["trace"], run.json["shards"]), (IMAGES, IMAGES, 3))
+        shards = self.answers(101)
+        self.assertEqual(len(shards), 3)
+        self.assertEqual(sum(one["traced"] for one in shards), IMAGES)
+        last = self.answers(102)
+        self.assert_counts(last[0], images=IMAGES, built=IMAGES, traced=0, traced_samples=0)
+        self.assertEqual(self.marks(), [])
+        self.assert_as_on_one_machine()
+        self.assertIsNone(self.status()["slurm"])
+        # Nothing but what is to last is left, on either disk.
+        self.assertEqual(list((self.folder / "local").glob("dsbuild.*")), [])
+        names = {path.name for path in self.store.iterdir()} - {"lock", "dsbuild.sqlite-checked"}
+        self.assertEqual(names, {"objects", "records", "slurm", "dsbuild.sqlite", "datasets"})
+        self.assertEqual(len(list((self.store / "datasets").iterdir())), 1)
+        calls = (self.fake / "calls").read_text().splitlines()
+        self.assertIn("--array=1-3%2 ", calls[0])
+        self.assertIn("--dependency=afterany:101 ", calls[1])
+        self.assertTrue(all("--requeue" in call for call in calls))
+
+    def test_what_shards_left_the_last_job_makes(self):
+        (self.fake / "done-2").touch()  # never run
+        self.slurm("--shards", "2")
+        traced = [one["traced"] for one in self.answers(101) + self.answers(102)]
+        self.assertEqual(sum(traced), IMAGES)
+        self.assertGreater(traced[-1], 0)
+        self.assert_as_on_one_machine()
+
+    def test_a_shard_may_run_twice(self):
+        script = self.slurm("--print", "--shards", "2").out
+        (self.folder / "job.sh").write_text(script)
+        traced = []
+        for task in ("1", "2", "1"):
+            run = subprocess.run(["bash", self.folder / "job.sh", "shard"], env={**self.environment, "SLURM_ARRAY_TASK_ID": task},
+                                 capture_output=True, text=True, check=True)
+            traced.append(json.loads(run.stdout.splitlines()[-1])["traced"])
+        self.assertEqual((sum(traced), traced[2]), (IMAGES, 0))
+        self.assertFalse(self.out.exists())
+        self.assertFalse((self.store / "dsbuild.sqlite").exists())
+
+    def test_print_makes_nothing_and_its_script_submits_itself(self):
+        run = self.slurm("--print", "--nodes", "5", "--", "--time=2:00:00", "-p", "long")
+        self.assertFalse(self.store.exists() or self.out.exists() or (self.fake / "calls").exists())
+        lines = run.out.splitlines()
+        self.assertEqual(lines[0], "#!/bin/bash")
+        self.assertIn("set -euo pipefail", lines)
+        self.assertIn("array=1-20%5", lines)
+        self.assertIn("options=('--time=2:00:00' '-p' 'long')", lines)
+        (self.folder / "job.sh").write_text(run.out)
+        subprocess.run(["bash", "-n", self.folder / "job.sh"], check=True)
+        (self.fake / "hold").touch()
+        run = subprocess.run(["bash", self.folder / "job.sh"], env=self.environment, capture_output=True, text=True, check=True)
+        self.assertEqual(run.stdout, "101\n102\n")
+        calls = (self.fake / "calls").read_text()
+        self.assertEqual(calls.count("--time=2:00:00 -p long "), 2)
+
+    def test_any_path_and_value(self):
+        odd = self.folder / "a 'b' $(touch no) %j \"c\""
+        odd.mkdir()
+        shutil.copytree(self.tiny, odd / "tiny")
+        self.out = odd / "o u't"
+        self.store = odd / "store"
+        settings = ["--set", 'dataset.description="it\'s $HOME `no` \\"x\\""']
+        self.slurm("--shards", "2", *settings, recipe=odd / "tiny/recipe.toml")
+        self.assertEqual(list(self.folder.rglob("no")), [])
+        self.recipe = odd / "tiny/recipe.toml"
+        self.assertEqual(self.marks(), [])
+        self.assert_as_on_one_machine(*settings)
+
+    def test_status_meanwhile(self):
+        (self.fake / "hold").touch()
+        script = pathlib.Path(self.slurm("--shards", "2").json["script"])
+        (self.fake / "known").write_text("102\n")
+        database = (self.store / "dsbuild.sqlite").read_bytes()
+        files = {path for path in self.store.rglob("*")}
+        status = self.status()
+        self.assertEqual((status["kept"], status["trace"], status["slurm"]["state"], status["slurm"]["jobs"],
+                          status["slurm"]["shards"]), (0, IMAGES, "running", ["101", "102"], 2))
+        self.assertEqual({path for path in self.store.rglob("*")}, files)
+        subprocess.run(["bash", script, "shard"], env={**self.environment, "SLURM_ARRAY_TASK_ID": "1"}, check=True,
+                       stdout=subprocess.DEVNULL)
+        status = self.status()
+        self.assertTrue(0 < status["kept"] < IMAGES)
+        self.assertEqual((status["kept"], status["trace"]), (status["place"], IMAGES - status["kept"]))
+        text = self.run_it("status", self.recipe, "-o", self.out, env=self.environment).out
+        self.assertIn(f"in 2 shares, make it now; {status['kept']} of {IMAGES} images are kept", text)
+        self.assertEqual((self.store / "dsbuild.sqlite").read_bytes(), database)
+        (self.fake / "known").unlink()
+        self.assertEqual(self.status()["slurm"]["state"], "gone")
+        (self.fake / "mute").touch()
+        self.assertEqual(self.status()["slurm"]["state"], "unknown")
+
+    def test_two_coordinators(self):
+        (self.fake / "hold").touch()
+        self.slurm()
+        (self.fake / "known").write_text("101\n")
+        calls = (self.fake / "calls").read_text()
+        run = self.slurm(code=2)
+        self.assertIn("jobs 101, 102 of ", run.err)
+        self.assertIn("fill this store now", run.err)
+        (self.fake / "mute").touch()
+        self.assertIn("squeue does not say", self.slurm(code=1).err)
+        self.assertEqual((self.fake / "calls").read_text(), calls)
+        # Ended, however it ended: taken over, and said.
+        (self.fake / "mute").unlink()
+        (self.fake / "known").unlink()
+        (self.fake / "hold").unlink()
+        run = self.slurm("--shards", "2")
+        self.assertIn("jobs 101, 102 of ", run.err)
+        self.assertIn("this goes on where they were", run.err)
+        self.assertEqual(self.marks(), [])
+        self.assert_as_on_one_machine()
+
+    def test_many_at_once_one_wins(self):
+        (self.fake / "hold").touch()
+        for jobs in ("101\n102\n", "103\n104\n"):  # the second time over a mark of jobs that are gone
+            (self.fake / "known").write_text(jobs)
+            processes = [self.start("slurm", self.recipe, "-o", self.out, "--store", self.store, env=self.environment)
+                         for _ in range(4)]
+            codes = []
+            for process in processes:
+                process.communicate(timeout=300)
+                codes.append(process.returncode)
+            self.assertEqual(sorted(codes), [0, 2, 2, 2])
+            self.assertEqual(len(self.marks()), 1)
+
+    def test_refused_jobs_leave_no_mark(self):
+        (self.fake / "refuse").touch()
+        run = self.slurm(code=1)
+        self.assertIn("sbatch: error: invalid partition", run.err)
+        self.assertIn("sbatch takes the jobs", run.err)
+        self.assertEqual(self.marks(), [])
+
+    def test_wrong_usage(self):
+        nowhere = {**self.environment, "PATH": str(self.folder)}
+        run = self.slurm(code=1, environment=nowhere)
+        self.assertEqual(run.err, "dsbuild: error: slurm: no sbatch on PATH, so no Slurm; --print writes the script\n")
+        self.assertFalse(self.store.exists() or self.out.exists())
+        self.assertEqual(self.slurm("--print", environment=nowhere).err, "")
+        for arguments in (["--nodes", "0"], ["--shards", "x"], ["--shards", "70000"]):
+            self.assertIn(f"slurm {arguments[0]}: wanted a whole number", self.slurm(*arguments, code=2).err)
+        run = self.run_it("slurm", self.tiny, env=self.environment)
+        self.assertEqual((run.code, run.err), (2, f"dsbuild: error: slurm: wanted a recipe, found the folder {self.tiny}\n"))
+
+
+class DatabaseTest(TinyCase):
+    def setUp(self):
+        super().setUp()
+        self.store = self.folder / "store"
+        self.local = self.folder / "local"
+
+    def test_a_database_elsewhere(self):
+        here = ["--store", self.store, "--database", self.local]
+        self.assert_counts(self.build(*here), built=IMAGES, traced=IMAGES)
+        self.assertFalse((self.store / "lock").exists() or (self.out / ".dsbuild/build").exists())
+        self.assert_counts(self.build(*here), built=0, reused=IMAGES)
+        # The whole copy in the store serves whoever works there, and the next machine.
+        self.assert_counts(self.build(), built=0, reused=IMAGES)
+        shutil.rmtree(self.local)
+        self.assert_counts(self.build(*here), built=0, reused=IMAGES)
+        self.assertEqual(len(self.run_it("log", self.out, "--json").json["builds"]), 4)
+
+    def test_an_empty_database_is_filled_from_records(self):
+        self.build("--store", self.store, "--database", self.local)
+        shutil.rmtree(self.local)
+        (self.store / "dsbuild.sqlite").unlink()
+        (self.out / "images/box.off/0.png").unlink()
+        counts = self.build("--store", self.store, "--database", self.local)
+        self.assert_counts(counts, built=IMAGES, traced=0, traced_samples=0)
+        # What another machine made since is known, too.
+        other = ["--store", self.store, "--database", self.folder / "other"]
+        self.build(*other, "--set", "engine.spp=2", "--shard", "1/1", out=self.folder / "passing")
+        counts = self.build("--store", self.store, "--database", self.local, "--set", "engine.spp=2", "-n")
+        self.assert_counts(counts, stale=IMAGES, traced_samples=0)
+        self.assert_counts(self.build("--store", self.store, "--database", self.local, "--set", "engine.spp=2"), traced=0)
+
+    def test_a_killed_processes_log_is_not_taken_for_the_new_databases(self):
+        self.build("--store", self.store)
+        (self.store / "dsbuild.sqlite-wal").write_bytes(b"not a log of this database" * 100)
+        self.build("--store", self.store, "--database", self.local, "--set", "engine.spp=2")
+        self.assertFalse((self.store / "dsbuild.sqlite-wal").exists())
+        self.assert_counts(self.build("--set", "engine.spp=2"), built=0, reused=IMAGES)
+
+
+if __name__ == "__main__":
+    main()
