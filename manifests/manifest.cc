@@ -106,6 +106,7 @@ json to_json_value(const ImageRecord& image) {
   if (image.metres_per_pixel) line["metres_per_pixel"] = *image.metres_per_pixel;
   if (image.fold) line["fold"] = *image.fold;
   if (!image.other_classes.empty()) line["classes"] = image.other_classes;
+  if (image.draw_attempts) line["draw_attempts"] = *image.draw_attempts;
   if (!image.draws.empty()) line["draws"] = to_json_value(image.draws);
   add_counted(line, image);
   add_pose(line, image);

@@ -65,6 +65,9 @@ struct ImageRecord {
   /// "classes": class path by DatasetRecord::hierarchies, "" for none. Not there where those are not.
   std::map<std::string, std::string> other_classes{};
   DrawRecords draws{};  ///< of distributions in the recipe; not there where those are not
+  /// How often they were drawn until the recipe's camera.keep let the view pass; a field only where it asks
+  /// something.
+  std::optional<std::uint64_t> draw_attempts{};
   std::vector<FileRecord> files;
   std::uint64_t seed = 0;  ///< below 2^53, so that every JSON reader gets it exactly
   int spp = 0, width = 0, height = 0;

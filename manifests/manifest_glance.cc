@@ -3,6 +3,8 @@
 
 #include "manifests/json_text.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 
@@ -99,13 +101,20 @@ std::optional<LineGlance> glance_at(std::string_view line) {
   if (!at.is_null(R"("class_id":)")) glance.class_id = at.count(R"("class_id":)");
   glance.class_path = at.text(R"("class_path":)");
   // A quote inside a text has a backslash before it, so these stand between members only.
-  constexpr std::string_view k_classes = R"(,"classes":)", k_draws = R"(,"draws":)";
+  constexpr std::string_view k_classes = R"(,"classes":)", k_draws = R"(,"draws":)",
+                             k_attempts = R"(,"draw_attempts":)";
   std::string_view between = at.until(R"(,"environment":)");
-  const std::size_t draws = std::min(between.find(k_draws), between.size());
+  const std::size_t draws =
+      std::min({between.find(k_attempts), between.find(k_draws), between.size()});
   if (between.starts_with(k_classes))
     glance.other_classes = between.substr(k_classes.size(), draws - k_classes.size());
   between.remove_prefix(draws);
-  if (!between.empty()) glance.draws = between.substr(k_draws.size());
+  if (between.starts_with(k_attempts)) {
+    between.remove_prefix(k_attempts.size());
+    glance.draws = std::string(between.substr(0, between.find(k_draws))) + " ";
+    between.remove_prefix(std::min(between.find(k_draws), between.size()));
+  }
+  if (!between.empty()) glance.draws += between.substr(k_draws.size());
   glance.environment = at.text(R"("environment":)");
   Cursor files = at.inside(R"("files":)", '[', R"(],"files_key":)");
   while (files.ok() && files.has(R"("kind":)")) {
@@ -142,6 +151,11 @@ std::optional<LineGlance> glance_at(std::string_view line) {
   return glance;
 }
 
+std::string draws_text(std::optional<std::uint64_t> attempts, const DrawRecords& draws) {
+  return (attempts ? fmt::format("{} ", *attempts) : "") +
+         (draws.empty() ? "" : canonical_json(to_json_value(draws)));
+}
+
 LineGlance glance_at(const ImageRecord& image) {
   LineGlance glance{
       image.id,
@@ -156,7 +170,7 @@ LineGlance glance_at(const ImageRecord& image) {
       image.class_id,
       image.fold,
       image.other_classes.empty() ? "" : canonical_json(image.other_classes),
-      image.draws.empty() ? "" : canonical_json(to_json_value(image.draws)),
+      draws_text(image.draw_attempts, image.draws),
       image.render_key,
       image.files_key};
   for (const FileRecord& file : image.files)

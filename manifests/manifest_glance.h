@@ -22,7 +22,8 @@ struct LineGlance {
   std::uint64_t pixels = 0;  ///< width times height
   PixelCounts pixel_counts;
   std::optional<std::uint64_t> class_id, fold;
-  std::string other_classes, draws;  ///< as canonical JSON; "" where there are none
+  std::string other_classes;  ///< as canonical JSON; "" where there are none
+  std::string draws;          ///< draws_text
   Hash128 render_key, files_key;
 };
 
@@ -30,5 +31,7 @@ struct LineGlance {
 /// escaped, or where it is another line: `image_from_json_line` then tells.
 std::optional<LineGlance> glance_at(std::string_view line);
 LineGlance glance_at(const ImageRecord& image);
+/// The draws as canonical JSON, and before them how often they were drawn.
+std::string draws_text(std::optional<std::uint64_t> attempts, const DrawRecords& draws);
 
 }  // namespace ds

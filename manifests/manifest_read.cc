@@ -224,6 +224,8 @@ ImageRecord image_from(const std::string& line, const SourcePlace& place,
   fields.text("environment", image.environment);
   fields.text("view", image.view);
   fields.object("draws", image.draws, draws_from);
+  if (object->contains("draw_attempts"))
+    fields.count("draw_attempts", image.draw_attempts.emplace());
   if (const json* files = fields.find("files"))
     image.files = files_from(*files, place, diagnostics);
   fields.count("seed", image.seed);

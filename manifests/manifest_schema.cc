@@ -119,6 +119,7 @@ json image_schema() {
       {"split", {{"enum", {"train", "test", ""}}}},
       {"fold", said(k_count, "of cross-validation; not of the test split")},
       {"material", k_text},
+      {"draw_attempts", said(k_count, "how often they were drawn until camera.keep let them pass")},
       {"draws", said(map_of(k_drawn), "what distributions of the recipe gave, by key")},
       {"environment", k_text},
       {"view", k_text},
@@ -158,9 +159,10 @@ json image_schema() {
                            {"camera", k_hash},
                            {"engine", k_hash}},
                           {"model", "material", "environment", "camera", "engine"})}};
-  json required = fields_of(fields, {"classes", "draws", "fold", "metres_per_pixel", "box",
-                                     "visible_fraction", "occlusion", "truncation",
-                                     "model_to_world", "model_to_camera", "model_box", "box_m"});
+  json required =
+      fields_of(fields, {"classes", "draw_attempts", "draws", "fold", "metres_per_pixel", "box",
+                         "visible_fraction", "occlusion", "truncation", "model_to_world",
+                         "model_to_camera", "model_box", "box_m"});
   return headed(object_of(std::move(fields), std::move(required)),
                 "A line of manifest/images.jsonl of a dataset of dsbuild");
 }

@@ -71,4 +71,20 @@ void print_draws(const Recipe& recipe, const ImageSpec& image) {
     say(Stream::result, "drawn {:<{}}  {}\n", key, width, numbers_text(draw.values));
 }
 
+void print_rejected(const Recipe& recipe, const DrawCounts& counts) {
+  if (!recipe.keep.any() || counts.draws == 0) return;
+  std::uint64_t all = 0;
+  std::string each;
+  for (const auto& [condition, count] : counts.rejected) {
+    all += count;
+    each += fmt::format("{}{} {:.2g} %", each.empty() ? ": " : ", ", condition,
+                        100 * static_cast<double>(count) / static_cast<double>(counts.draws));
+  }
+  say(Stream::result, "camera.keep rejects {} of {} draws{}\n", all, counts.draws, each);
+}
+
+nlohmann::json rejected_json(const DrawCounts& counts) {
+  return {{"draws", counts.draws}, {"rejected", counts.rejected}};
+}
+
 }  // namespace ds

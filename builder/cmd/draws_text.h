@@ -15,4 +15,9 @@ nlohmann::json draws_json(const Recipe& recipe, const Plan& plan);
 /// A line a key: what was drawn for the image.
 void print_draws(const Recipe& recipe, const ImageSpec& image);
 
+/// Prints which share of the draws camera.keep rejected, by condition; nothing where it asks nothing.
+void print_rejected(const Recipe& recipe, const DrawCounts& counts);
+/// {"draws": 120, "rejected": {"visible": 17}}.
+nlohmann::json rejected_json(const DrawCounts& counts);
+
 }  // namespace ds

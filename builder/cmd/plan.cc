@@ -180,6 +180,7 @@ int run_plan(const Arguments& arguments) {
   const std::vector<Concern> concerns = tell_planned_concerns(dataset.recipe, plan);
   nlohmann::json object = arguments.json ? plan_json(plan, counts) : nlohmann::json();
   if (arguments.json) object["concerns"] = to_json(concerns);
+  if (arguments.json && dataset.recipe.keep.any()) object["keep"] = rejected_json(plan.drawn);
   if (arguments.json && arguments.draws) object.update(draws_json(dataset.recipe, plan));
   if (!arguments.json) {
     if (arguments.draws)
@@ -187,6 +188,7 @@ int run_plan(const Arguments& arguments) {
     else if (!wish.any)
       print_plan(Stream::result, plan, arguments.verbose);
     say(Stream::result, "{}\n", summary(counts));
+    print_rejected(dataset.recipe, plan.drawn);
     print_manifest_line(plan);
     print_edited(Stream::result, plan);
   }

@@ -158,10 +158,11 @@ namespace {
 
 /// An image whose model cannot be read keeps its camera: it is left out where its key is made.
 void settle_images(std::vector<PairImages>& pairs, const Recipe& recipe, Inputs& inputs) {
+  ImageSettler settler(recipe, inputs);
   for (PairImages& pair : pairs)
     for (ImageSpec& image : pair.images) {
       try {
-        settle_image(image, recipe, inputs);
+        settler.settle(image);
       } catch (const DamagedDatabase&) {
         throw;
       } catch (const Error&) {

@@ -80,7 +80,7 @@ ImageFacts facts_of(const ImageSpec& spec, const PixelCounts& counts) {
 }
 
 std::string draws_text(const ImageSpec& spec, const Recipe& recipe) {
-  return recipe.drawn.empty() ? "" : canonical_json(to_json_value(draws_of(spec, recipe)));
+  return draws_text(attempts_of(spec, recipe), draws_of(spec, recipe));
 }
 
 /// Whether the line labels the image as the plan does.

@@ -208,8 +208,9 @@ Accuracy measure_accuracy(const Recipe& recipe, Inputs& inputs, SceneTracer& tra
   Accuracy accuracy{recipe.name, tracer.device(), recipe.engine, options, {}};
   if (accuracy.options.most_spp == 0) accuracy.options.most_spp = std::max(16, recipe.engine.spp);
   std::vector<PairChoice> pairs = representative_images(expand(recipe));
+  ImageSettler settler(recipe, inputs);
   for (PairChoice& chosen : pairs) {
-    settle_image(chosen.image, recipe, inputs);
+    settler.settle(chosen.image);
     told(fmt::format("{} of {}: {} in {}, {}", accuracy.pairs.size() + 1, pairs.size(),
                      *chosen.image.material_name, *chosen.image.environment_name, chosen.image.id));
     const Subject subject = subject_of(chosen.image, recipe, inputs);

@@ -60,6 +60,11 @@ DrawRecords draws_of(const ImageSpec& image, const Recipe& recipe) {
   return draws;
 }
 
+std::optional<std::uint64_t> attempts_of(const ImageSpec& image, const Recipe& recipe) {
+  if (recipe.drawn.empty() || !recipe.keep.any()) return std::nullopt;
+  return static_cast<std::uint64_t>(image.variables->attempts) + 1;
+}
+
 DrawSummaries summaries_of(const Recipe& recipe, const std::vector<const ImageSpec*>& images) {
   DrawSummaries summaries;
   for (std::size_t i = 0; i < recipe.drawn.size(); ++i) {
@@ -102,6 +107,7 @@ ImageRecord image_record(const PlannedImage& image, const Recipe& recipe, const 
   record.class_id = class_id_of(plan, *spec.class_path);
   record.other_classes = spec.other_classes;
   record.draws = draws_of(spec, recipe);
+  record.draw_attempts = attempts_of(spec, recipe);
   record.material = spec.material_name;
   record.environment = spec.environment_name;
   record.view = spec.view;

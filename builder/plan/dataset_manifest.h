@@ -20,6 +20,8 @@ std::optional<std::uint64_t> class_id_of(const Plan& plan, const std::string& cl
 
 /// What the recipe drew for an image, and for some.
 DrawRecords draws_of(const ImageSpec& image, const Recipe& recipe);
+/// How often they were drawn; nothing where the recipe rejects none.
+std::optional<std::uint64_t> attempts_of(const ImageSpec& image, const Recipe& recipe);
 DrawSummaries summaries_of(const Recipe& recipe, const std::vector<const ImageSpec*>& images);
 
 /// The manifest's line for an image whose files are in place. Throws Error(io) where the database

@@ -2,17 +2,42 @@
 #pragma once
 
 #include "builder/plan/inputs.h"
+#include "builder/plan/view_conditions.h"
 #include "builder/recipe/recipe.h"
 #include "tracer/scene/vary.h"
 
+#include <cstdint>
+#include <map>
 #include <string>
 
 namespace ds {
 
-/// Gives an image the place of its model and the camera it is made with: where one that was drawn sees
-/// nothing it throws Error(recipe), and where the recipe wants it the model just fits. Throws what
-/// reading the model throws.
-void settle_image(ImageSpec& image, const Recipe& recipe, Inputs& inputs);
+/// How many draws camera.keep rejected, by condition.
+struct DrawCounts {
+  std::uint64_t draws = 0;
+  std::map<std::string, std::uint64_t> rejected;
+};
+
+/// Gives images the place of their models and the cameras they are made with: those that just show the
+/// model where the recipe wants that, and of the draws the first that camera.keep lets pass.
+class ImageSettler {
+ public:
+  ImageSettler(const Recipe& recipe, Inputs& inputs)
+      : recipe_(recipe), inputs_(inputs), conditions_(recipe, inputs) {}
+
+  /// Throws Error(recipe) where the camera that was drawn sees nothing, or no draw passes, and what reading
+  /// the model throws.
+  void settle(ImageSpec& image);
+  const DrawCounts& counts() const { return counts_; }
+
+ private:
+  void place(ImageSpec& image);
+
+  const Recipe& recipe_;
+  Inputs& inputs_;
+  ViewConditions conditions_;
+  DrawCounts counts_;
+};
 
 /// What of its environment is the image's own.
 EnvironmentChange change_of(const ImageSpec& image);

@@ -151,6 +151,14 @@ Sphere Inputs::model_sphere(const std::filesystem::path& file, const NormaliseOp
   return {after.point(portable::inverse(before).point(at->second.centre)), at->second.radius_m};
 }
 
+const FileMesh& Inputs::model_file_mesh(const std::filesystem::path& file) {
+  if (!last_file_ || last_file_->file != file) {
+    last_file_.reset();
+    last_file_ = LastFile{file, read_model(file).mesh};
+  }
+  return last_file_->mesh;
+}
+
 double Inputs::model_lowest(const std::filesystem::path& file, const NormaliseOptions& options) {
   NormaliseOptions turned;
   turned.up = options.up;
@@ -162,11 +170,7 @@ double Inputs::model_lowest(const std::filesystem::path& file, const NormaliseOp
     const auto [end, error] = std::from_chars(known->data(), known->data() + known->size(), lowest);
     if (error == std::errc() && end == known->data() + known->size()) return lowest;
   }
-  if (!last_file_ || last_file_->file != file) {
-    last_file_.reset();
-    last_file_ = LastFile{file, read_model(file).mesh};
-  }
-  const double lowest = lowest_of(last_file_->mesh, turned);
+  const double lowest = lowest_of(model_file_mesh(file), turned);
   keep_known(question, fmt::format("{}", lowest));
   return lowest;
 }

@@ -72,6 +72,8 @@ class Inputs {
   /// the database does not know it.
   Sphere model_sphere(const std::filesystem::path& file, const NormaliseOptions& options,
                       double lowest = 0);
+  /// As its file has it; the last is kept.
+  const FileMesh& model_file_mesh(const std::filesystem::path& file);
   /// lowest_of it. Reads it likewise.
   double model_lowest(const std::filesystem::path& file, const NormaliseOptions& options);
   /// What its file has beside places; throws likewise.

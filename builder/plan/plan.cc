@@ -344,6 +344,7 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
   KeyMaker keys(dataset.recipe, inputs, plan.texts);
   Planner planner(dataset, keys, plan.texts, force, inputs.stamps());
   plan.images.reserve(image_count(dataset.recipe));
+  ImageSettler settler(dataset.recipe, inputs);
   Shared<std::filesystem::path> model;  // of the image before: a model's images follow each other
   expand(dataset.recipe, [&](ImageSpec&& spec) {
     PlannedImage image;
@@ -353,7 +354,7 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
     try {
       check_normals(dataset.recipe, inputs, image.spec.model_file);
       check_ids(dataset.recipe, inputs, image.spec);
-      settle_image(image.spec, dataset.recipe, inputs);
+      settler.settle(image.spec);
       if (image.spec.engine.target)
         image.spec.engine.target->tone_map =
             tone_map_of(dataset.recipe, inputs.environment_facts(image.spec.environment_folder));
@@ -384,6 +385,7 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
     }
     plan.images.push_back(std::move(image));
   });
+  plan.drawn = settler.counts();
   plan.class_ids = class_ids(dataset.recipe, classes_of(plan.images));
   plan.placed = planner.placed();
   plan.to_remove = plan.placed->left_over(plan.images, shard);

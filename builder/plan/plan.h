@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "builder/plan/image_scene.h"
 #include "builder/plan/inputs.h"
 #include "builder/plan/keys.h"
 #include "builder/plan/shard.h"
@@ -102,6 +103,7 @@ struct Plan {
   /// sizes_unlikely, names_by_case, meshes_damaged, models_unlikely. Findings, but for names_by_case,
   /// were warned of when they were found.
   std::vector<Concern> concerns;
+  DrawCounts drawn;  ///< of all shards' images
 };
 
 /// `force`: every image of the shard is traced again. `inputs` must outlive what is executed of the

@@ -185,6 +185,11 @@ void fit_image(ImageSpec& image, const Recipe& recipe, const Sphere& model) {
       fit_camera(image.camera, *recipe.camera_fit, model, image.engine.width, image.engine.height);
 }
 
+bool draws_views(const Recipe& recipe) {
+  return std::any_of(recipe.drawn.begin(), recipe.drawn.end(),
+                     [](const Drawn& one) { return one.distribution.per == DrawnPer::view; });
+}
+
 void draw_again(ImageSpec& image, const Recipe& recipe, int attempts) {
   image.variables = drawn_for(recipe, image.model_name, image.view, attempts);
   if (draws_camera(recipe))

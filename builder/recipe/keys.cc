@@ -239,6 +239,18 @@ constexpr std::array k_own_keys = {
             R"(camera.focus = "distance")",
             "Distance of the plane in focus along the viewing axis; must be given with focus = "
             "\"distance\""},
+    KeySpec{"camera.keep.in_frame", scene, number, "", "0", between(0, 1), "", "",
+            "Least share of the model's projected area that must be inside the picture: else the "
+            "view is drawn again, as with the next two; see Distributions"},
+    KeySpec{"camera.keep.visible", scene, number, "", "0", between(0, 1), "", "",
+            "Least share of the model that nothing may hide, of what of it is in the picture; told "
+            "by 64 x 64 rays"},
+    KeySpec{"camera.keep.clearance_m", scene, number, "m", "0", between(0, k_far_m), "", "",
+            "Least distance of the camera from model and environment. With any of the three above "
+            "0 the camera must not be inside the model either"},
+    KeySpec{"camera.keep.tries", images, integer, "", "64", between(1, 10000), "", "",
+            "Most draws of an image until its view is kept; without one the image is an error of "
+            "the plan"},
 
     KeySpec{"engine.width", scene, integer, "pixel", "512", between(1, 16384), "", "",
             "Width of the picture"},

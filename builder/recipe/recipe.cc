@@ -194,6 +194,8 @@ Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrid
   recipe.cameras = std::move(views.cameras);
   recipe.view_names = std::move(views.names);
   recipe.camera_fit = views.fit;
+  recipe.keep = {settings.number("camera.keep.in_frame"), settings.number("camera.keep.visible"),
+                 settings.number("camera.keep.clearance_m"), settings.integer("camera.keep.tries")};
   read_split(settings, recipe);
   recipe.engine = read_engine(settings);
   recipe.outputs = read_outputs(settings);

@@ -74,6 +74,15 @@ struct SplitSettings {
   int folds = 0;                   ///< 0: none
 };
 
+/// camera.keep: what a view that was drawn must fulfil.
+struct KeepSettings {
+  double in_frame = 0, visible = 0;  ///< least shares
+  double clearance_m = 0;            ///< least; 0: none is asked
+  int tries = 0;                     ///< most draws of one image
+
+  bool any() const { return in_frame > 0 || visible > 0 || clearance_m > 0; }
+};
+
 /// A classification beside the one that images are labelled with: "coarse1" of the benchmark.
 struct Hierarchy {
   std::string name;
@@ -120,6 +129,7 @@ struct Recipe {
   /// them.
   std::vector<Camera> cameras;
   CameraSet camera_set;
+  KeepSettings keep;
   Variables constants;                  ///< of what is not drawn
   std::vector<Drawn> drawn;             ///< by key
   std::optional<CameraFit> camera_fit;  ///< each is moved to where its image's model just fits
@@ -196,6 +206,8 @@ ClassIds class_ids(const Recipe& recipe, const std::set<std::string>& paths);
 /// How the image's model is placed.
 NormaliseOptions normalise_of(const ImageSpec& image, const Recipe& recipe);
 
+/// Whether another attempt at an image gives other numbers.
+bool draws_views(const Recipe& recipe);
 /// Draws again what the recipe draws, for an image of which so many draws were rejected, and its
 /// camera with it.
 void draw_again(ImageSpec& image, const Recipe& recipe, int attempts);

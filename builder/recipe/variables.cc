@@ -83,8 +83,13 @@ std::vector<Drawn> drawn_of(const Settings& settings) {
 void draw_all(const std::vector<Drawn>& drawn, const DrawnFor& of, Variables& variables,
               DrawnValues& values) {
   values.clear();
+  // What several images share stays when the view of one is drawn again.
+  DrawnFor shared = of;
+  shared.attempt = 0;
   for (const Drawn& one : drawn) {
-    const DrawnValue& value = values.emplace_back(draw(one.distribution, one.key, of));
+    const bool own = one.distribution.per == DrawnPer::view;
+    const DrawnValue& value =
+        values.emplace_back(draw(one.distribution, one.key, own ? of : shared));
     std::copy_n(value.begin(), width_of(one.distribution.kind), one.at(variables));
   }
 }

@@ -101,6 +101,17 @@ class LabelsTest(TinyCase):
                 flip = [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]
                 self.assert_close(record["model_to_camera"]["opengl"], product(flip, to_camera))
 
+    def test_views_that_are_kept_show_the_model(self):
+        sunk = ["--set", "models.place_m={box=[[-0.06,0,-0.12],[0.06,0,0]]}", *SIZE, "--set", "outputs.image=false",
+                "--set", 'outputs.planes=["mask", "amodal_mask"]']
+        self.build(*sunk)
+        self.assertLess(min(r["visible_fraction"] for r in self.records()), 0.5)
+        self.build(*sunk, "--set", "camera.keep.visible=0.7", "--set", "camera.keep.in_frame=1")
+        for record in self.records():
+            self.assertGreater(record["visible_fraction"], 0.66, record["id"])
+            self.assertLess(record["truncation"], 0.02, record["id"])
+        self.assertGreater(max(r["draw_attempts"] for r in self.records()), 1)
+
     def test_truncation_is_what_rays_beyond_the_frame_meet(self):
         some = 0
         for more in (["--set", "camera.target=[0.1,0.02,0.05]"],

@@ -30,6 +30,9 @@ const std::string k_reinhard = R"(outputs.tone_map="reinhard02")";
 const std::string k_random_material = R"(materials.assign="random")";
 const std::string k_random_place = R"(environments.assign="random")";
 
+// Models that stand in the floor, more or less.
+const std::string k_sunk = "models.place_m={box=[[0,0,-0.12],[0,0,0]]}";
+
 class Moving : public TinyDataset {
  protected:
   Moving() {
@@ -75,6 +78,11 @@ class Moving : public TinyDataset {
              *x.spec.environment_folder == *y.spec.environment_folder;
     };
     if (!all(shows)) return Moves::images;
+    // Which of them can be made.
+    if (!all([](const auto& x, const auto& y) {
+          return x.error.has_value() == y.error.has_value();
+        }))
+      return Moves::images;
     // Of planes that both have.
     const bool geometry = !all([](const auto& x, const auto& y) {
       for (const OutputFile& one : x.keys.outputs)
@@ -175,6 +183,10 @@ std::vector<Flip> Moving::flips() const {
       {"environments.turn_deg", "0", "30"},
       {"environments.gain", "1", "2"},
       {"environments.temperature_k", "false", "3000"},
+      {"camera.keep.in_frame", "0", "1", {"camera.target={ball=0.12}"}},
+      {"camera.keep.visible", "0", "0.5", {k_sunk}},
+      {"camera.keep.clearance_m", "0", "0.2", {"camera.distance_m={uniform=[0.2,0.4]}"}},
+      {"camera.keep.tries", "1", "64", {"camera.keep.visible=0.5", k_sunk}},
       {"camera.set", "\"orbit\"", "\"half-dodecahedron\""},
       {"camera.distance_m", "0.4", "\"fit\""},
       {"camera.fit_margin", "0.05", "0.1", {k_fit}},
