@@ -21,7 +21,8 @@ bool traces_paths(const OutputSettings& outputs) {
 }  // namespace
 
 std::vector<Effect> image_effects(const Recipe& recipe, Inputs& inputs, const ImageSpec& image) {
-  std::vector<Effect> effects = effects_of(scene_without_model(inputs, image), image.camera);
+  std::vector<Effect> effects =
+      effects_of(scene_without_model(recipe, inputs, image), image.camera);
   for (Effect& effect : effects)
     if (!traces_paths(recipe.outputs) && effect.name != "camera-invisible objects") {
       effect.simulated = false;

@@ -2,6 +2,7 @@
 #include "builder/make/image_keeper.h"
 
 #include "builder/make/plane_outputs.h"
+#include "builder/plan/image_scene.h"
 #include "builder/plan/limits.h"
 #include "tracer/base/disk_error.h"
 #include "tracer/base/error.h"
@@ -274,11 +275,12 @@ Product ImageKeeper::developed(Ready& ready, const OutputFile& output,
     keep_bytes(ready, std::move(film_product), encode_film_exr(film), traced.film_run);
   }
   const auto start = Clock::now();
-  const BytePicture picture = develop(film, traced.tone_map);
+  const auto [picture, scale, clipped] =
+      develop(film, traced.tone_map, effects_of(traced.image->spec));
   ready.work.developed = true;
-  product.tone_map_scale = tone_map_scale(film, traced.tone_map);
+  product.tone_map_scale = scale;
   product.pixel_counts = count_picture(picture.pixels, picture.channels);
-  product.pixel_counts.white = clipped_pixels(film, traced.tone_map);
+  product.pixel_counts.white = clipped;
   return keep_bytes(ready, std::move(product), encode_png(picture), {seconds_since(start), ""});
 }
 

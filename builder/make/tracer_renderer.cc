@@ -2,6 +2,7 @@
 #include "builder/make/plane_outputs.h"
 #include "builder/make/renderer.h"
 #include "builder/make/scene_ahead.h"
+#include "builder/plan/image_material.h"
 #include "builder/plan/image_scene.h"
 #include "builder/plan/keys.h"
 #include "tracer/base/error.h"
@@ -64,10 +65,10 @@ class TracerRenderer : public Renderer {
     SceneUse use;
   };
   std::string name_of(const ImageSpec& image) const {
-    return fmt::format("{}\n{}\n{}\n{}{}", image.model_file->native(),
-                       image.material_file->native(), image.environment_folder->native(),
-                       canonical_change(change_of(image)),
-                       canonical_model({}, {}, normalise_of(image, recipe_)));
+    return fmt::format(
+        "{}\n{}\n{}\n{}{}{}", image.model_file->native(), image.material_file->native(),
+        image.environment_folder->native(), canonical_change(change_of(image)),
+        canonical_model({}, {}, normalise_of(image, recipe_)), canonical_vary(image, recipe_));
   }
 
   void load(const ImageSpec& image, SceneUse use) {
@@ -99,8 +100,8 @@ class TracerRenderer : public Renderer {
   /// What makes the scene, in whatever thread. Reads what `inputs_` must look up here.
   SceneSource source_of(const ImageSpec& image, SceneUse use) {
     const Scene& environment = inputs_.environment(image.environment_folder);
-    const Scene& material = inputs_.material(image.material_file);
-    return [this, use, engine = image.engine, &environment, &material, meshes = &inputs_.meshes(),
+    return [this, use, engine = image.engine, &environment,
+            material = material_of(image, recipe_, inputs_), meshes = &inputs_.meshes(),
             change = change_of(image),
             source = inputs_.model_source(image.model_file, normalise_of(image, recipe_))] {
       Mesh model = meshes->get(source);
@@ -118,8 +119,8 @@ class TracerRenderer : public Renderer {
       const ImageSpec& next = *upcoming_.front();
       upcoming_.pop_front();
       try {
-        if (tracer_.prepare_ahead(scene_without_model(inputs_, next), next.camera, next.engine,
-                                  wanted_light_planes(recipe_.outputs)))
+        if (tracer_.prepare_ahead(scene_without_model(recipe_, inputs_, next), next.camera,
+                                  next.engine, wanted_light_planes(recipe_.outputs)))
           return;
       } catch (const Error&) {  // a file that cannot be read fails its own images
       }

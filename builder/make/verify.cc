@@ -4,6 +4,7 @@
 #include "builder/make/checksum_lines.h"
 #include "builder/make/older_lines.h"
 #include "builder/make/plane_outputs.h"
+#include "builder/plan/image_scene.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
 #include "tracer/base/hash_stream.h"
@@ -164,8 +165,9 @@ class Rerender {
     }
     if (output.plane == nullptr) {
       const Film film = renderer_.trace(image_.spec, nullptr, {}, stop_);
-      return encode_png(
-          develop(film, tone_map_of(recipe_, inputs_.environment(image_.spec.environment_folder))));
+      const ToneMap& tone_map =
+          tone_map_of(recipe_, inputs_.environment(image_.spec.environment_folder));
+      return encode_png(develop(film, tone_map, effects_of(image_.spec)).picture);
     }
     if (planes_.empty()) planes_ = renderer_.trace_planes(image_.spec, planes_of(recipe_.outputs));
     return encode_output(recipe_.outputs, output, planes_);

@@ -72,6 +72,12 @@ void ImageSettler::settle(ImageSpec& image) {
   fail(ErrorKind::recipe, "{}: no view with {}", image.id, failed_text(recipe_, *best, tries));
 }
 
+CameraEffects effects_of(const ImageSpec& image) {
+  const Variables& v = image.variables->values;
+  return {v.exposure_ev,    v.vignetting, v.blur_px, v.noise, static_cast<int>(v.jpeg_quality),
+          image.engine.seed};
+}
+
 EnvironmentChange change_of(const ImageSpec& image) {
   const Variables& values = image.variables->values;
   return {values.environment_turn_deg, values.environment_gain, values.environment_temperature_k};

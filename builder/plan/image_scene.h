@@ -4,6 +4,7 @@
 #include "builder/plan/inputs.h"
 #include "builder/plan/view_conditions.h"
 #include "builder/recipe/recipe.h"
+#include "tracer/render/camera_effects.h"
 #include "tracer/scene/vary.h"
 
 #include <cstdint>
@@ -38,6 +39,9 @@ class ImageSettler {
   ViewConditions conditions_;
   DrawCounts counts_;
 };
+
+/// What is done to its picture behind the film.
+CameraEffects effects_of(const ImageSpec& image);
 
 /// What of its environment is the image's own.
 EnvironmentChange change_of(const ImageSpec& image);

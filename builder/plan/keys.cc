@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/keys.h"
 
+#include "builder/plan/image_material.h"
 #include "builder/plan/image_scene.h"
 #include "builder/plan/output_kinds.h"
 #include "builder/plan/plane_keys.h"
@@ -54,9 +55,9 @@ Mesh stand_in() {
 
 }  // namespace
 
-Scene scene_without_model(Inputs& inputs, const ImageSpec& image) {
+Scene scene_without_model(const Recipe& recipe, Inputs& inputs, const ImageSpec& image) {
   const Scene& environment = inputs.environment(image.environment_folder);
-  const Scene& material = inputs.material(image.material_file);
+  const Scene material = material_of(image, recipe, inputs);
   EnvironmentChange gain = change_of(image);
   gain.turn_deg = 0;
   return gain == EnvironmentChange{} ? compose(environment, material, stand_in())
@@ -169,6 +170,7 @@ struct Kind {
   Shared<std::filesystem::path> material, environment;  ///< keep the addresses that are its name
   Hash128 material_part;
   std::uint32_t material_id = 0;
+  std::string files;  ///< canonical, of an image without effects of its camera
   Hash128 files_part;
   MeshExtras reads;                     ///< of a model, by the material
   Hash128 colours;                      ///< of canonical_colours
@@ -181,12 +183,18 @@ struct Kind {
   std::optional<TextForm> kept;
 };
 
+/// Of an image's own material: of its texts.
+struct MaterialHashes {
+  Hash128 part, colours;
+};
+
 /// Whether the image's gain makes another program.
 bool is_gained(const ImageSpec& image, const Environment& environment) {
   return environment.gain_changes_program && is_gain(change_of(image));
 }
 
-/// All that the kinds of effects in an image depend on.
+/// All that the kinds of effects in an image depend on. What constants a material has is no part of them, so
+/// that images with other values of the same properties are of one kind.
 std::string kind_name(const ImageSpec& image, const Environment& environment, Hash128 material) {
   return fmt::format("{} {} {}{}", material.hex(), environment.part.hex(),
                      image.camera.lens_radius_m > 0 ? "lens" : "pinhole",
@@ -210,10 +218,11 @@ class KeyMaker::State {
   Kind& kind_of(const ImageSpec& image, const Environment& environment);
   const std::string& program(const ImageSpec& image);
   Hash128 program_hash(const ImageSpec& image, const Environment& environment, Hash128 material);
-  Hash128 traced_plane(std::size_t number, const PartHashes& parts, View& view, Kind& kind,
-                       const ImageSpec& image);
-  void add_outputs(ImageKeys& keys, Environment& environment, View& view, Kind& kind,
-                   const ImageSpec& image);
+  MaterialHashes material_of_image(const Kind& kind, const ImageSpec& image);
+  Hash128 traced_plane(std::size_t number, const PartHashes& parts, Hash128 colours, View& view,
+                       Kind& kind, const ImageSpec& image);
+  void add_outputs(ImageKeys& keys, Hash128 colours, Environment& environment, View& view,
+                   Kind& kind, const ImageSpec& image);
 
   const Recipe& recipe_;
   Inputs& inputs_;
@@ -300,8 +309,8 @@ View& KeyMaker::State::view_of(Environment& environment, const ImageSpec& image)
 }
 
 /// Of what a plane is made from, for an image; `parts`: of its picture.
-Hash128 KeyMaker::State::traced_plane(std::size_t number, const PartHashes& parts, View& view,
-                                      Kind& kind, const ImageSpec& image) {
+Hash128 KeyMaker::State::traced_plane(std::size_t number, const PartHashes& parts, Hash128 colours,
+                                      View& view, Kind& kind, const ImageSpec& image) {
   const WantedPlane& plane = planes_[number];
   if (is_of_light(*plane.type)) {
     const Hash128 engine =
@@ -314,7 +323,7 @@ Hash128 KeyMaker::State::traced_plane(std::size_t number, const PartHashes& part
     MeshExtras reads = kind.reads;
     reads.normals = plane.reads.normals;
     return form.hash({HexText(kind.plane_programs[number]).text(),
-                      HexText(model_part(image, reads)).text(), HexText(kind.colours).text()});
+                      HexText(model_part(image, reads)).text(), HexText(colours).text()});
   }
   const bool has_id = (plane.type->traits & kernels::k_plane_material_ids) != 0;
   const fmt::format_int material_id(kind.material_id);
@@ -324,7 +333,7 @@ Hash128 KeyMaker::State::traced_plane(std::size_t number, const PartHashes& part
 
 /// Of few different ones, however many materials and environments there are.
 const std::string& KeyMaker::State::program(const ImageSpec& image) {
-  SceneEffects effects = scene_effects(scene_without_model(inputs_, image), image.camera);
+  SceneEffects effects = scene_effects(scene_without_model(recipe_, inputs_, image), image.camera);
   for (const auto& [known, text] : programs_)
     if (known == effects) return text;
   std::string text = program_tokens(path_program_text(effects));
@@ -357,7 +366,7 @@ Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& enviro
   settings.seed = 0;
   kind.material = image.material_file;
   kind.environment = image.environment_folder;
-  const Scene& material = inputs_.material(image.material_file);
+  const Scene material = material_of(image, recipe_, inputs_);
   kind.material_part = texts_.add(canonical_material(material));
   kind.reads = reads_of(material, static_cast<int>(material.materials.size()) - 1);
   kind.reads.normals = true;
@@ -365,7 +374,8 @@ Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& enviro
   CanonicalText id;
   if (recipe_.outputs.find_plane("material_id") != nullptr)
     id.add("model.material.id", kind.material_id);
-  kind.files_part = texts_.add(environment.files + id.text());
+  kind.files = environment.files + id.text();
+  kind.files_part = texts_.add(kind.files);
   kind.program = program_hash(image, environment, kind.material_part);
   kind.engine =
       TextForm(canonical_engine(settings, TextSet::k_reference + kind.program.hex()), {"seed"});
@@ -378,7 +388,7 @@ Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& enviro
     const bool light = is_of_light(*plane.type);
     Hash128 program;
     if (light || reads_materials(*plane.type))
-      program = plane_program(*plane.type, of, inputs_, image);
+      program = plane_program(*plane.type, of, recipe_, inputs_, image);
     kind.plane_programs.push_back(program);
     TextForm engine;
     if (light) engine = TextForm(canonical_engine(settings, program.hex()), {"seed"});
@@ -389,8 +399,16 @@ Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& enviro
   return kind;
 }
 
-void KeyMaker::State::add_outputs(ImageKeys& keys, Environment& environment, View& view, Kind& kind,
-                                  const ImageSpec& image) {
+/// What is drawn of a material is each image's own.
+MaterialHashes KeyMaker::State::material_of_image(const Kind& kind, const ImageSpec& image) {
+  if (recipe_.vary.empty()) return {kind.material_part, kind.colours};
+  const Scene material = material_of(image, recipe_, inputs_);
+  return {hash_text(texts_.fold(canonical_material(material))),
+          planes_.empty() ? Hash128{} : hash_text(canonical_colours(material))};
+}
+
+void KeyMaker::State::add_outputs(ImageKeys& keys, Hash128 colours, Environment& environment,
+                                  View& view, Kind& kind, const ImageSpec& image) {
   keys.outputs.reserve(output_kinds_.size());
   std::vector<HexText> texts;
   texts.reserve(output_kinds_.size());
@@ -399,9 +417,13 @@ void KeyMaker::State::add_outputs(ImageKeys& keys, Environment& environment, Vie
   for (const OutputKind& output : output_kinds_) {
     Hash128 key;
     if (output.plane == nullptr) {
-      key = environment.picture.hash({HexText(keys.render).text()});
+      const std::string effects = canonical_effects(effects_of(image));
+      const HexText render(keys.render);
+      key = effects.empty()
+                ? environment.picture.hash({render.text()})
+                : hash_text(std::string(environment.picture.fill({render.text()})) + effects);
     } else {
-      const Hash128 traced = traced_plane(next, keys.parts, view, kind, image);
+      const Hash128 traced = traced_plane(next, keys.parts, colours, view, kind, image);
       key = planes_[next++].output.hash({HexText(traced).text()});
     }
     texts.emplace_back(key);
@@ -417,9 +439,10 @@ ImageKeys KeyMaker::State::keys(const ImageSpec& image) {
   Environment& environment = environment_of(image);
   View& view = view_of(environment, image);
   Kind& kind = kind_of(image, environment);
+  const MaterialHashes material = material_of_image(kind, image);
   ImageKeys keys;
   keys.parts = {model_part(image, kind.reads),
-                kind.material_part,
+                material.part,
                 environment.part,
                 view.part,
                 kind.engine.hash({view_of_digits(fmt::format_int(image.engine.seed))}),
@@ -428,7 +451,9 @@ ImageKeys KeyMaker::State::keys(const ImageSpec& image) {
   keys.render =
       five_.hash({HexText(parts[0]).text(), HexText(parts[1]).text(), HexText(parts[2]).text(),
                   HexText(parts[3]).text(), HexText(parts[4]).text()});
-  add_outputs(keys, environment, view, kind, image);
+  if (const std::string effects = canonical_effects(effects_of(image)); !effects.empty())
+    keys.parts[5] = hash_text(texts_.fold(kind.files + effects));
+  add_outputs(keys, material.colours, environment, view, kind, image);
   return keys;
 }
 
@@ -450,6 +475,9 @@ void KeyMaker::State::add_texts(const ImageSpec& image) {
   texts_.add(canonical_model(inputs_.model_hashes(image.model_file), kind.reads,
                              normalise_of(image, recipe_)));
   texts_.add(canonical_camera(image.camera) + canonical_change(change_of(image)));
+  if (const std::string effects = canonical_effects(effects_of(image)); !effects.empty())
+    texts_.add(kind.files + effects);
+  if (!recipe_.vary.empty()) texts_.add(canonical_material(material_of(image, recipe_, inputs_)));
   texts_.add(kind.engine.fill({view_of_digits(fmt::format_int(image.engine.seed))}));
   if (texts_.find(kind.program) != nullptr) return;
   CanonicalText text;

@@ -2,6 +2,7 @@
 #include "builder/plan/plan.h"
 
 #include "builder/plan/hash_index.h"
+#include "builder/plan/image_material.h"
 #include "builder/plan/image_scene.h"
 #include "builder/plan/licence_files.h"
 #include "builder/plan/limits.h"
@@ -338,6 +339,7 @@ std::pair<std::string, PropertyChange> of_its_part(const char* part, PropertyCha
 
 Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
   check_licensed(dataset.recipe);
+  check_vary(dataset.recipe, inputs);
   Plan plan;
   plan.data_version = dataset.database->data_version();
   std::optional<Snapshot> snapshot(std::in_place, dataset.database->connection());

@@ -77,12 +77,13 @@ TextForm plane_form(const WantedPlane& plane, const std::map<unsigned, std::stri
   return {text.text() + turn, parts};
 }
 
-Hash128 plane_program(const PlaneType& plane, const std::string& of, Inputs& inputs,
-                      const ImageSpec& image) {
+Hash128 plane_program(const PlaneType& plane, const std::string& of, const Recipe& recipe,
+                      Inputs& inputs, const ImageSpec& image) {
   const std::string question = fmt::format("program of {} {}", plane.name, of);
   if (const auto known = inputs.find_known(question))
     if (const auto hash = Hash128::from_hex(*known)) return *hash;
-  const SceneEffects effects = scene_effects(scene_without_model(inputs, image), image.camera);
+  const SceneEffects effects =
+      scene_effects(scene_without_model(recipe, inputs, image), image.camera);
   const std::array alone{&plane};
   const Hash128 hash = hash_text(
       program_tokens(is_of_light(plane) ? path_program_text(with_light_planes(effects, alone))

@@ -35,7 +35,7 @@ TextForm plane_form(const WantedPlane& plane, const std::map<unsigned, std::stri
 
 /// Hash of the tokens of the program that traces this plane alone in the image's scene, of which the
 /// question `of` says all that the program depends on.
-Hash128 plane_program(const PlaneType& plane, const std::string& of, Inputs& inputs,
-                      const ImageSpec& image);
+Hash128 plane_program(const PlaneType& plane, const std::string& of, const Recipe& recipe,
+                      Inputs& inputs, const ImageSpec& image);
 
 }  // namespace ds

@@ -54,7 +54,7 @@ std::optional<std::string> own_text(const KeySpec& key, const Recipe& recipe) {
 
 bool is_number_type(KeyType type) {
   return type == KeyType::number || type == KeyType::point || type == KeyType::quaternion ||
-         type == KeyType::point_list;
+         type == KeyType::point_list || type == KeyType::patterns;
 }
 
 }  // namespace

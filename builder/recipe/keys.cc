@@ -173,6 +173,10 @@ constexpr std::array k_own_keys = {
             R"(materials.assign = "random" | "balanced")",
             "Whether chance chooses once for all views of a model, or anew for each view"},
 
+    KeySpec{"materials.vary", film, patterns, "", "{}", k_any, "", "",
+            "What is drawn of the material an image shows: by NAME.PROPERTY of its file, a "
+            "distribution or a constant; see Distributions"},
+
     KeySpec{"environments.dir", images, path, "", "", k_any, "", "",
             "Folder of environments: the folders in it that hold an environment.scn. Either this "
             "or environments.files must be given; with --set, the one given replaces the other"},
@@ -333,6 +337,22 @@ constexpr std::array k_own_keys = {
     KeySpec{"outputs.tone_map_gamma", files, number, "", "2.2", between(0.1, 10), "",
             R"(outputs.tone_map = "linear" | "reinhard02" | "autolinear")",
             "Pictures hold radiance^(1/gamma)"},
+    KeySpec{"outputs.camera.exposure_ev", files, number, "EV", "0", between(-20, 20), "", "",
+            "Exposure of the picture, on top of its tone map: a factor of 2^exposure_ev. This and "
+            "the "
+            "next four are done to pictures behind the film, in this order, and to nothing else"},
+    KeySpec{"outputs.camera.vignetting", files, number, "", "0", between(0, 1), "", "",
+            "Share of the light that the picture's corners lose; it grows with the square of the "
+            "distance from the middle"},
+    KeySpec{"outputs.camera.blur_px", files, number, "pixel", "0", between(0, 64), "", "",
+            "Deviation of a Gaussian blur, in linear light"},
+    KeySpec{"outputs.camera.noise", files, number, "", "0", between(0, 1), "", "",
+            "Sensor noise: its deviation at white (1 under the tone map). Variance noise^2 (v + "
+            "0.01) "
+            "at v: shot noise, and what is read out in the dark"},
+    KeySpec{"outputs.camera.jpeg_quality", files, integer, "", "false", between(1, 100), "false",
+            "",
+            "The picture is what a JPEG of this quality leaves of it, stored without further loss"},
     KeySpec{"outputs.keep_film", manifest, boolean, "", "true", k_any, "", "",
             "Keep the traced film in the store, so that another tone map needs no tracing; costs "
             "12 bytes a pixel before compression"},

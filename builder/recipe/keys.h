@@ -24,6 +24,7 @@ enum class KeyType {
   point,         ///< three numbers
   quaternion,    ///< four numbers, not all 0: w, x, y, z
   point_list,
+  patterns,  ///< a table of patterns of properties and what is drawn for each
 };
 
 using KeyRange = NumberRange;

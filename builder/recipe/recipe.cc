@@ -8,6 +8,7 @@
 #include "builder/recipe/planes.h"
 #include "builder/recipe/settings.h"
 #include "builder/recipe/splits.h"
+#include "builder/recipe/vary_patterns.h"
 #include "tracer/base/files.h"
 #include "tracer/base/nearest.h"
 #include "tracer/scene/mesh_formats.h"
@@ -189,6 +190,7 @@ Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrid
   recipe.constants = constants_of(settings);
   recipe.normalise.size_m = recipe.constants.model_size_m;
   recipe.drawn = drawn_of(settings);
+  read_vary(settings, recipe);
   CameraViews views = make_cameras(settings, recipe.constants);
   recipe.camera_set = std::move(views.set);
   recipe.cameras = std::move(views.cameras);

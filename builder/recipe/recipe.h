@@ -6,6 +6,7 @@
 #include "builder/recipe/shared.h"
 #include "builder/recipe/variables.h"
 #include "manifests/classification.h"
+#include "tracer/base/error.h"
 #include "tracer/render/plane_file.h"
 #include "tracer/render/render.h"
 #include "tracer/scene/mesh.h"
@@ -74,6 +75,14 @@ struct SplitSettings {
   int folds = 0;                   ///< 0: none
 };
 
+/// A pattern of materials.vary.
+struct VaryPattern {
+  std::string pattern;    ///< "*.uroughness"
+  bool optional = false;  ///< "?": materials that have no such property are left as they are
+  std::size_t drawn = 0;  ///< index of Recipe::drawn
+  SourcePlace place;
+};
+
 /// camera.keep: what a view that was drawn must fulfil.
 struct KeepSettings {
   double in_frame = 0, visible = 0;  ///< least shares
@@ -130,8 +139,9 @@ struct Recipe {
   std::vector<Camera> cameras;
   CameraSet camera_set;
   KeepSettings keep;
-  Variables constants;                  ///< of what is not drawn
-  std::vector<Drawn> drawn;             ///< by key
+  Variables constants;       ///< of what is not drawn
+  std::vector<Drawn> drawn;  ///< by key
+  std::vector<VaryPattern> vary;
   std::optional<CameraFit> camera_fit;  ///< each is moved to where its image's model just fits
   std::vector<std::string> view_names;  ///< "0", "1", ...; as long as cameras
   EngineSettings engine;

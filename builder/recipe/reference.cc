@@ -40,6 +40,8 @@ std::string_view type_text(KeyType type) {
       return "a list of four numbers";
     case KeyType::point_list:
       return "a list of lists of three numbers";
+    case KeyType::patterns:
+      return "a table of patterns, each = a number, a list of three, or a distribution";
   }
   return "";
 }

@@ -61,6 +61,13 @@ json type_schema(const KeySpec& key) {
       return numbers_in(key.range, 4);
     case KeyType::point_list:
       return list_of(numbers_in(key.range, 3));
+    case KeyType::patterns: {
+      json values{{"type", "number"}};
+      json each{{"anyOf", {values, numbers_in({}, 3)}}};
+      for (const DrawnKind kind : {DrawnKind::number, DrawnKind::colour})
+        each["anyOf"].push_back({{"$ref", fmt::format("#/$defs/{}", name_of(kind))}});
+      return {{"type", "object"}, {"additionalProperties", each}};
+    }
   }
   return nullptr;
 }
@@ -70,6 +77,7 @@ json to_json(const RecipeValue& value) {
   if (const auto* flag = value.boolean()) return *flag;
   if (const auto* whole = value.integer()) return *whole;
   if (value.is_number()) return value.number();
+  if (value.table() != nullptr) return json::object();  // a default's is empty
   json list = json::array();
   if (const auto* array = value.array())
     for (const RecipeValue& element : *array)
@@ -210,6 +218,7 @@ nlohmann::json recipe_schema() {
     json& section = section_of(root, name);
     section["properties"][std::string(name)] = schema_of(key);
   }
+  root["$defs"]["colour"] = distributions_of(DrawnKind::colour);
   for (const VariableKey& row : variable_keys())
     root["$defs"][std::string(name_of(row.kind))] = distributions_of(row.kind);
   return root;

@@ -73,6 +73,8 @@ const RecipeValue* unfit_part(const KeySpec& key, const RecipeValue& value) {
                       [](const RecipeValue& number) { return number.number() != 0; }));
     case KeyType::point_list:
       return first_unfit(value, [&](const RecipeValue& v) { return is_list_of(3, key, v); });
+    case KeyType::patterns:
+      return all_or_nothing(value.table() != nullptr);
   }
   return &value;
 }

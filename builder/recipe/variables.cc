@@ -29,6 +29,12 @@ constexpr VariableKey k_variables[] = {
     {"camera.lens_radius_m", DrawnKind::number, [](Variables& v) { return &v.lens_radius_m; }},
     {"camera.focus_distance_m", DrawnKind::number,
      [](Variables& v) { return &v.focus_distance_m; }},
+    {"outputs.camera.exposure_ev", DrawnKind::number, [](Variables& v) { return &v.exposure_ev; }},
+    {"outputs.camera.vignetting", DrawnKind::number, [](Variables& v) { return &v.vignetting; }},
+    {"outputs.camera.blur_px", DrawnKind::number, [](Variables& v) { return &v.blur_px; }},
+    {"outputs.camera.noise", DrawnKind::number, [](Variables& v) { return &v.noise; }},
+    {"outputs.camera.jpeg_quality", DrawnKind::integer,
+     [](Variables& v) { return &v.jpeg_quality; }},
 };
 
 /// A constant's numbers; none for a literal, a distribution and what is not given.
@@ -70,7 +76,7 @@ std::vector<Drawn> drawn_of(const Settings& settings) {
   std::vector<Drawn> drawn;
   for (const KeySpec& key : recipe_keys()) {
     const Distribution* distribution = settings.distribution(key.name);
-    if (distribution == nullptr) continue;
+    if (distribution == nullptr || find_variable(key.name) == nullptr) continue;
     const VariableKey& row = *find_variable(key.name);
     const RecipeValue& value = *settings.find(key.name);
     drawn.push_back({std::string(key.name),
@@ -90,7 +96,8 @@ void draw_all(const std::vector<Drawn>& drawn, const DrawnFor& of, Variables& va
     const bool own = one.distribution.per == DrawnPer::view;
     const DrawnValue& value =
         values.emplace_back(draw(one.distribution, one.key, own ? of : shared));
-    std::copy_n(value.begin(), width_of(one.distribution.kind), one.at(variables));
+    if (one.at != nullptr)
+      std::copy_n(value.begin(), width_of(one.distribution.kind), one.at(variables));
   }
 }
 

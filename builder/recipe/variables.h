@@ -27,7 +27,9 @@ struct Variables {
   double lens_radius_m = 0, focus_distance_m = 0;
   std::array<double, 3> target{}, position_m{};
   double environment_turn_deg = 0, environment_gain = 1;
-  double environment_temperature_k = 0;  ///< 0: false
+  double environment_temperature_k = 0;                            ///< 0: false
+  double exposure_ev = 0, vignetting = 0, blur_px = 0, noise = 0;  ///< outputs.camera
+  double jpeg_quality = 0;                                         ///< 0: none
 
   bool operator==(const Variables&) const = default;
 };
@@ -49,7 +51,7 @@ struct Drawn {
   std::string key;   ///< "camera.fov_deg"
   std::string text;  ///< the distribution as TOML, in one spelling
   Distribution distribution;
-  double* (*at)(Variables&) = nullptr;
+  double* (*at)(Variables&) = nullptr;  ///< null for what is no member: properties of materials
 };
 
 /// Of each Drawn of a recipe its value, one behind the other.

@@ -120,9 +120,12 @@ std::array<double, 3> ToneCurve::at(const std::array<float, 3>& rgb) const {
 }
 
 BytePicture develop(const Film& film, const ToneMap& tone_map) {
+  return develop_at(film, tone_map, tone_map_scale(film, tone_map));
+}
+
+BytePicture develop_at(const Film& film, const ToneMap& tone_map, double scale) {
   DS_ASSERT(tone_map.gamma > 0);
   const std::size_t count = pixel_count(film);
-  const double scale = tone_map_scale(film, tone_map);
   const std::array<double, 255> starts = level_starts(double{tone_map.gamma});
   BytePicture picture{film.width, film.height, 3, std::vector<std::uint8_t>(count * 3)};
   for (std::size_t i = 0; i < count; ++i) {
@@ -135,8 +138,11 @@ BytePicture develop(const Film& film, const ToneMap& tone_map) {
 }
 
 std::uint64_t clipped_pixels(const Film& film, const ToneMap& tone_map) {
+  return clipped_pixels_at(film, tone_map, tone_map_scale(film, tone_map));
+}
+
+std::uint64_t clipped_pixels_at(const Film& film, const ToneMap& tone_map, double scale) {
   constexpr double k_clipped = 1.05;
-  const double scale = tone_map_scale(film, tone_map);
   std::uint64_t clipped = 0;
   for (std::size_t i = 0; i < pixel_count(film); ++i) {
     const float* rgb = film.rgb.data() + i * 3;

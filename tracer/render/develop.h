@@ -47,9 +47,12 @@ double tone_map_scale(const Film& film, const ToneMap& tone_map);
 /// looks gamma up in a table of 4096 steps. The same bits on every machine: no libm transcendental.
 /// NaN gives 0. gamma > 0.
 BytePicture develop(const Film& film, const ToneMap& tone_map);
+/// The same with a scale of another film's, as of this one before it was changed.
+BytePicture develop_at(const Film& film, const ToneMap& tone_map, double scale);
 /// Pixels of which `develop` takes light away in every channel: the tone map gives each over 1.05.
 /// At 1, as of a plain white sky, nothing is lost.
 std::uint64_t clipped_pixels(const Film& film, const ToneMap& tone_map);
+std::uint64_t clipped_pixels_at(const Film& film, const ToneMap& tone_map, double scale);
 /// What `develop` makes of linear radiance before it rounds, in [0, 1], within 1e-4 and in a tenth
 /// of the time: for error estimates. The same bits on every machine.
 class ToneCurve {

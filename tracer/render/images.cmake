@@ -6,7 +6,7 @@ target_link_libraries(dsbuild_images PRIVATE ds_options fmt::fmt PkgConfig::OIIO
 set_target_properties(dsbuild_images PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}")
 
 ds_library(ds_images
-  SOURCES develop.cc exr_header.cc image_claims.cc image_files.cc image_meaning.cc images.cc loaded_images.cc plane_file.cc png_chunks.cc strict_math.cc tiff_directory.cc
+  SOURCES camera_effects.cc develop.cc exr_header.cc image_claims.cc image_files.cc image_meaning.cc images.cc loaded_images.cc plane_file.cc png_chunks.cc strict_math.cc tiff_directory.cc
   LIBS ds_base
   PRIVATE_LIBS ${CMAKE_DL_LIBS})
 add_dependencies(ds_images dsbuild_images)

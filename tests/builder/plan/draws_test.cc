@@ -176,5 +176,121 @@ TEST_F(DrawsTest, ACameraThatSeesNothingIsAnErrorOfItsImageAlone) {
   EXPECT_GT(made, 0U);
 }
 
+// Effects of the camera change what is made of films, and no film.
+TEST_F(DrawsTest, EffectsOfTheCameraTraceNothing) {
+  build();
+  request.overrides = {"outputs.camera.noise={uniform=[0.01,0.02]}",
+                       "outputs.camera.jpeg_quality={integer=[60,95]}"};
+  const Plan after = plan();
+  for (const PlannedImage& image : after.images) {
+    EXPECT_THAT(image.reasons,
+                testing::Contains(testing::StartsWith("files changed: camera.noise: added 0.01")));
+    EXPECT_FALSE(image.trace_film || image.trace_planes) << image.spec.id;
+  }
+  build();
+  EXPECT_TRUE(calls.traced.empty());
+  EXPECT_TRUE(calls.planes.empty());
+  for (const ImageRecord& image : read_images_manifest(output()))
+    EXPECT_TRUE(image.draws.at("outputs.camera.jpeg_quality").whole);
+  const auto noisy = contents();
+  request.overrides = {"outputs.camera.noise={cycle=[0]}"};
+  build();
+  EXPECT_TRUE(calls.traced.empty());
+  for (const auto& [path, bytes] : contents())
+    if (path.ends_with("0.png")) {
+      EXPECT_NE(bytes, noisy.at(path)) << path;
+    }
+}
+
+// What is drawn of a material is of its part; another material's image is another's business.
+TEST_F(DrawsTest, PropertiesOfMaterialsAreDrawn) {
+  const Plan before = plan();
+  request.overrides = {"materials.vary={\"*.kd\"={hsv=[[0,1],[0.5,0.9],[0.3,0.9]]}}"};
+  const Plan after = plan();
+  std::set<Hash128> materials;
+  for (std::size_t i = 0; i < after.images.size(); ++i) {
+    const ImageKeys &a = before.images[i].keys, &b = after.images[i].keys;
+    ASSERT_FALSE(after.images[i].error) << after.images[i].error->what();
+    EXPECT_NE(a.parts[1], b.parts[1]);
+    for (std::size_t other = 0; other < 5; ++other)
+      if (other != 1) {
+        EXPECT_EQ(a.parts[other], b.parts[other]) << other;
+      }
+    for (std::size_t o = 0; o < a.outputs.size(); ++o)
+      if (a.outputs[o].plane != nullptr) {
+        EXPECT_EQ(a.outputs[o].key, b.outputs[o].key);
+      }
+    materials.insert(b.parts[1]);
+  }
+  EXPECT_EQ(materials.size(), k_images);
+  request.overrides = {"materials.vary={\"*.kd\"={hsv=[[0,1],[0.5,0.9],[0.3,0.9]],per=\"model\"}}"};
+  materials.clear();
+  for (const PlannedImage& image : plan().images)
+    materials.insert(image.keys.parts[1]);
+  EXPECT_LE(materials.size(), 4U);  // two models, of two materials at most
+  // The file's own value is no change, and a property that nothing has an error.
+  request.overrides = {
+      "materials.vary={\"red.kd?\"=[0.7,0.1,0.1],\"*.kd?\"={choice=[0.5]},"
+      "\"r*d.kd?\"=[0.7,0.1,0.1],\"green.kd?\"=[0.1,0.6,0.1]}"};
+  for (std::size_t i = 0; i < after.images.size(); ++i)
+    EXPECT_NE(plan().images[i].keys.render, Hash128{});
+}
+
+TEST_F(DrawsTest, APatternMustNameAProperty) {
+  const auto message = [&](const std::string& vary) -> std::string {
+    request.overrides = {"materials.vary={" + vary + "}"};
+    try {
+      plan();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(message("\"*.roughness?\"=0.1"),
+              testing::HasSubstr("\"*.roughness?\" names no property of any material"));
+  EXPECT_THAT(message("\"red.kd\"=0.1"),
+              testing::HasSubstr("must name a property of each material, found none in green.mat"));
+  EXPECT_THAT(message("\"kd\"=0.1"), testing::HasSubstr("must be NAME.PROPERTY"));
+  EXPECT_THAT(message("\"*.kd\"={uniform=[0,2]}"), testing::HasSubstr("in [0, 1]"));
+  EXPECT_THAT(message("\"*.kd\"={unifrom=[0,1]}"), testing::HasSubstr("did you mean uniform?"));
+  EXPECT_EQ(message("\"red.kd?\"=0.1"), "");
+}
+
+// Of each key that the reference says may be drawn: it is, and its values are in the manifest's place.
+TEST_F(DrawsTest, EveryKeyThatMayBeDrawnIs) {
+  const std::map<std::string, std::vector<std::string>> needed = {
+      {"camera.position_m", {"camera.set=\"random\""}},
+      {"camera.extent_m", {"camera.type=\"orthographic\""}},
+      {"camera.focus_distance_m", {"camera.focus=\"distance\""}}};
+  for (const VariableKey& row : variable_keys()) {
+    const std::string key(row.key);
+    std::string drawn;
+    if (row.kind == DrawnKind::rotation)
+      drawn = "{rotation=\"any\"}";
+    else if (row.kind == DrawnKind::point)
+      drawn = "{shell=[0.2,0.3]}";
+    else if (row.kind == DrawnKind::integer)
+      drawn = "{integer=[60,95]}";
+    else
+      drawn = key.ends_with("_k") ? "{uniform=[3000,5000]}" : "{uniform=[0.2,0.3]}";
+    request.overrides.clear();
+    if (const auto with = needed.find(key); with != needed.end()) request.overrides = with->second;
+    request.overrides.push_back(key + "=" + drawn);
+    const Plan drawn_plan = plan();
+    std::set<std::vector<double>> values;
+    for (const PlannedImage& image : drawn_plan.images) {
+      ASSERT_FALSE(image.error) << key << " " << image.error->what();
+      const ImageVariables& variables = *image.spec.variables;
+      ASSERT_EQ(variables.draws.size(), 1U) << key;
+      Variables copy = variables.values;
+      const double* const placed = row.at(copy);
+      values.insert({placed, placed + width_of(row.kind)});
+      for (std::size_t i = 0; i < width_of(row.kind); ++i)
+        EXPECT_EQ(placed[i], variables.draws[0][i]) << key;
+    }
+    EXPECT_EQ(values.size(), row.per == DrawnPer::model ? 2U : drawn_plan.images.size()) << key;
+  }
+}
+
 }  // namespace
 }  // namespace ds

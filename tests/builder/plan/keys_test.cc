@@ -171,7 +171,7 @@ TEST_F(KeysTest, EachSettingMovesWhatItCanChangeAndNothingElse) {
 
 /// As KeyMaker's header says them, from whole texts made for this image alone.
 ImageKeys keys_of_whole_texts(const Recipe& recipe, Inputs& inputs, const ImageSpec& image) {
-  const Scene scene = scene_without_model(inputs, image);
+  const Scene scene = scene_without_model(recipe, inputs, image);
   const std::string program = program_tokens(path_program_text(scene_effects(scene, image.camera)));
   TextSet texts;
   ImageKeys keys;

@@ -176,6 +176,7 @@ std::vector<Flip> Moving::flips() const {
       {"materials.files", paths("materials/red.mat"), paths("materials/green.mat")},
       {"materials.assign", "\"cycle\"", "\"all\""},
       {"materials.per", "\"model\"", "\"view\"", {k_random_material}},
+      {"materials.vary", "{}", "{\"*.kd\"={uniform=[0.1,0.2]}}"},
       {"environments.dir", path("environments"), path("few_environments")},
       {"environments.files", paths("environments/plain"), paths("environments/floor")},
       {"environments.assign", "\"cycle\"", "\"all\""},
@@ -230,6 +231,11 @@ std::vector<Flip> Moving::flips() const {
       {"outputs.tone_map_postscale", "1", "2", {k_reinhard}},
       {"outputs.tone_map_burn", "3", "4", {k_reinhard}},
       {"outputs.tone_map_gamma", "2.2", "2", {k_linear}},
+      {"outputs.camera.exposure_ev", "0", "0.5"},
+      {"outputs.camera.vignetting", "0", "0.5"},
+      {"outputs.camera.blur_px", "0", "0.5"},
+      {"outputs.camera.noise", "0", "0.01"},
+      {"outputs.camera.jpeg_quality", "false", "90"},
       {"outputs.keep_film", "true", "false"},
   };
   flips.insert(flips.end(), others.begin(), others.end());

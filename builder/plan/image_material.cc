@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/plan/image_material.h"
+
+#include "tracer/base/canonical.h"
+#include "tracer/scene/vary_material.h"
+
+#include <fmt/format.h>
+
+#include <span>
+#include <vector>
+
+namespace ds {
+namespace {
+
+Vec3d value_of(const ImageSpec& image, const Recipe& recipe, const VaryPattern& vary) {
+  const DrawnValue& value = image.variables->draws[vary.drawn];
+  const bool colour = recipe.drawn[vary.drawn].distribution.kind == DrawnKind::colour;
+  return colour ? Vec3d{value[0], value[1], value[2]} : Vec3d{value[0], value[0], value[0]};
+}
+
+}  // namespace
+
+Scene material_of(const ImageSpec& image, const Recipe& recipe, Inputs& inputs) {
+  std::vector<PropertyValue> values;
+  for (const VaryPattern& vary : recipe.vary)
+    values.push_back({vary.pattern, value_of(image, recipe, vary)});
+  return with_values(inputs.material(image.material_file), values);
+}
+
+std::string canonical_vary(const ImageSpec& image, const Recipe& recipe) {
+  CanonicalText text;
+  for (const VaryPattern& vary : recipe.vary) {
+    const Vec3d value = value_of(image, recipe, vary);
+    const double numbers[] = {value.x, value.y, value.z};
+    text.add(vary.pattern, std::span<const double>(numbers));
+  }
+  return text.text();
+}
+
+void check_vary(const Recipe& recipe, Inputs& inputs) {
+  Diagnostics diagnostics(ErrorKind::recipe);
+  for (const VaryPattern& vary : recipe.vary) {
+    bool any = false;
+    for (const std::filesystem::path& file : recipe.materials) {
+      const PropertyFit fit = fit_of(inputs.material(file), vary.pattern);
+      any = any || fit.count > 0;
+      if (fit.flag)
+        diagnostics.add(vary.place, "materials.vary {:?} names a switch of {}, which is not drawn",
+                        vary.pattern, file.filename().string());
+      if (fit.count > 0 && !fit.colour &&
+          recipe.drawn[vary.drawn].distribution.kind == DrawnKind::colour)
+        diagnostics.add(vary.place,
+                        "materials.vary {:?} is one number in {}, and a colour is drawn for it",
+                        vary.pattern, file.filename().string());
+      if (fit.count == 0 && !vary.optional)
+        diagnostics.add(vary.place,
+                        "materials.vary {:?} must name a property of each material, found none in "
+                        "{}; with a ? behind it such a material is left as it is",
+                        vary.pattern, file.filename().string());
+    }
+    if (!any && vary.optional)
+      diagnostics.add(vary.place, "materials.vary {:?} names no property of any material",
+                      vary.pattern + "?");
+  }
+  diagnostics.throw_if_any();
+}
+
+}  // namespace ds

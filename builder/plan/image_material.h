@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/plan/inputs.h"
+#include "builder/recipe/recipe.h"
+
+#include <string>
+#include <string_view>
+
+namespace ds {
+
+/// The image's material with what materials.vary drew for it.
+Scene material_of(const ImageSpec& image, const Recipe& recipe, Inputs& inputs);
+/// Canonical text of what was drawn for it; "" where nothing is.
+std::string canonical_vary(const ImageSpec& image, const Recipe& recipe);
+/// Throws Error(recipe), all findings, where a pattern of materials.vary names no property of any material, or
+/// without a "?" of one, or gives a colour to a property of one number.
+void check_vary(const Recipe& recipe, Inputs& inputs);
+
+}  // namespace ds
