@@ -61,7 +61,7 @@ struct EvenNumbers {
   int first = 0;  ///< of a candidate's own numbers
 
   double operator()(int i) const {
-    return even_number(of.seed, identity, key, first + i, of.attempt);
+    return of.number(of.seed, identity, key, first + i, of.attempt);
   }
 };
 

@@ -89,6 +89,59 @@ TEST(Distributions, OfNumbersAreWhatTheySay) {
             k_least_p);
 }
 
+// At the least and the greatest number there is, every value is one that the distribution may give.
+TEST(Distributions, StayInsideAtTheEndsOfTheirNumbers) {
+  constexpr double k_rounding = 1e-12;
+  const auto at_end = [](const std::string& text, DrawnKind kind, EvenNumberRule rule) {
+    return draw(read(text, kind), "camera.fov_deg", {7, "mug.ply", "3", 3, 0, rule});
+  };
+  const EvenNumberRule ends[] = {
+      [](std::uint64_t, std::string_view, std::string_view, int, int) { return 0.0; },
+      [](std::uint64_t, std::string_view, std::string_view, int, int) { return 1 - 0x1p-53; }};
+  for (const EvenNumberRule rule : ends) {
+    for (const auto& [text, least, most] :
+         {std::tuple{"{uniform = [35, 60]}", 35.0, 60.0},
+          {"{log_uniform = [0.02, 0.4]}", 0.02, 0.4},
+          {"{normal = [0, 4], within = [-10, 10]}", -10.0, 10.0},
+          {"{normal = [0, 1], within = [8, 9]}", 8.0, 9.0},
+          {"{choice = [1, 2, 3], weights = [1, 0, 1]}", 1.0, 3.0},
+          {"{choice = [{uniform = [4, 5]}, {uniform = [4.5, 5]}]}", 4.0, 5.0},
+          {"{cycle = [1, 2, 3]}", 1.0, 3.0},
+          {"{spread = [10, 20]}", 10.0, 20.0}}) {
+      const double value = at_end(text, DrawnKind::number, rule)[0];
+      EXPECT_GE(value, least) << text;
+      EXPECT_LE(value, most) << text;
+      if (std::string_view(text).find("weights") != std::string_view::npos) {
+        EXPECT_NE(value, 2);
+      }
+    }
+    const double whole = at_end("{integer = [1, 6]}", DrawnKind::integer, rule)[0];
+    EXPECT_EQ(whole, rule == ends[0] ? 1 : 6);
+    const DrawnValue box = at_end("{box = [[0, 1, 2], [1, 2, 3]]}", DrawnKind::point, rule);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_GE(box[i], double(i));
+      EXPECT_LT(box[i], double(i) + 1);
+    }
+    for (const auto& [text, least, most] :
+         {std::tuple{"{disc = [0.1, 0.3]}", 0.1, 0.3},
+          {"{ball = 0.5}", 0.0, 0.5},
+          {"{sphere = 0.5}", 0.5, 0.5},
+          {"{shell = [0.2, 0.4], elevation_deg = [-90, 90]}", 0.2, 0.4}}) {
+      const DrawnValue p = at_end(text, DrawnKind::point, rule);
+      const double radius = std::hypot(p[0], p[1], p[2]);
+      EXPECT_GE(radius, least - k_rounding) << text;
+      EXPECT_LE(radius, most + k_rounding) << text;
+    }
+    const DrawnValue colour = at_end("{hsv = [[0, 1], [0, 1], [0, 1]]}", DrawnKind::colour, rule);
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_TRUE(colour[i] >= 0 && colour[i] <= 1) << colour[i];
+    for (const char* text : {"{rotation = \"up\"}", "{rotation = \"any\"}"}) {
+      const DrawnValue q = at_end(text, DrawnKind::rotation, rule);
+      EXPECT_NEAR(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3], 1, k_rounding) << text;
+    }
+  }
+}
+
 TEST(Distributions, OfFewValuesAreWhatTheySay) {
   std::map<double, double> dice;
   for (const DrawnValue& value : draws("{integer = [1, 6]}", DrawnKind::integer))
