@@ -206,6 +206,8 @@ void Import::copy_models() const {
   for (const ModelFile* model : good_) {
     const fs::path to = place("models") / model->below;
     copy_file_atomic(model->file, to);
+    for (const fs::path& part : model_parts(model->file))
+      copy_file_atomic(part, to.parent_path() / part.lexically_relative(model->file.parent_path()));
     // What a licence beside it says holds of the copy too.
     if (!folders.insert(model->file.parent_path()).second) continue;
     std::error_code error;

@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <utility>
 
@@ -77,7 +78,8 @@ KnownModel Inputs::look_at_model(const std::filesystem::path& file) {
   if (stamp && stamps_ == Stamps::trust) content = database_.find_content(file, *stamp);
   const bool new_content = !content;
   if (!content) content = content_hash(file);
-  std::optional<KnownModel> known = database_.find_model(*content, k_mesh_reader_version);
+  const Hash128 whole = content_with_parts(file, *content);
+  std::optional<KnownModel> known = database_.find_model(whole, k_mesh_reader_version);
   const bool new_model = !known;
   if (!known) {
     const Model model = read_model(file);
@@ -86,8 +88,35 @@ KnownModel Inputs::look_at_model(const std::filesystem::path& file) {
   }
   if (new_content || new_model)
     new_models_.push_back(
-        {file, stamp && !is_racy(*stamp) ? stamp : std::nullopt, *content, *known});
+        {file, stamp && !is_racy(*stamp) ? stamp : std::nullopt, *content, whole, *known});
   return *known;
+}
+
+/// Which parts there are is asked of the file once for each content.
+Hash128 Inputs::content_with_parts(const std::filesystem::path& file, const Hash128& content) {
+  if (!may_have_parts(file)) return content;
+  const std::string question =
+      fmt::format("parts {} {}", content.hex(), file.parent_path().string());
+  std::vector<std::filesystem::path> parts;
+  if (const auto known = find_known(question)) {
+    for (std::string_view rest = *known; !rest.empty();) {
+      const std::size_t end = std::min(rest.find('\n'), rest.size());
+      if (end > 0) parts.emplace_back(rest.substr(0, end));
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+  } else {
+    parts = model_parts(file);
+    std::string text;
+    for (const std::filesystem::path& part : parts)
+      text += part.string() + "\n";
+    keep_known(question, text.empty() ? "\n" : text);
+  }
+  if (parts.empty()) return content;
+  CanonicalText whole;
+  whole.add("file", content.hex());
+  for (const std::filesystem::path& part : parts)
+    whole.add("part", content_of_file(part).hex());
+  return hash_text(whole.text());
 }
 
 const Inputs::ModelFacts& Inputs::model(const std::filesystem::path& file) {
@@ -175,9 +204,9 @@ double Inputs::model_lowest(const std::filesystem::path& file, const NormaliseOp
   return lowest;
 }
 
-/// A material's images are looked at by every command, and read only where they are not those of
+/// A material's images and a model's parts are looked at by every command, and read only where they are not those of
 /// the command before.
-Hash128 Inputs::content_of_image(const std::filesystem::path& file) {
+Hash128 Inputs::content_of_file(const std::filesystem::path& file) {
   return once(contents_, file, [this](const auto& path) {
     // Taken before the bytes are read, as for models.
     const std::optional<FileStamp> stamp = stamp_of(path);
@@ -219,8 +248,7 @@ void Inputs::look_at_pixels(Scene& scene) {
 
 const Scene& Inputs::material(const std::filesystem::path& file) {
   return once(materials_, file, [this](const auto& path) {
-    Scene scene =
-        read_material(path, [this](const auto& image) { return content_of_image(image); });
+    Scene scene = read_material(path, [this](const auto& image) { return content_of_file(image); });
     look_at_pixels(scene);
     return scene;
   });
@@ -232,7 +260,7 @@ const Scene& Inputs::environment(const std::filesystem::path& folder) {
     const std::uint64_t warnings = warning_count();
     std::vector<std::filesystem::path> files;
     Scene scene = read_environment(path, &files,
-                                   [this](const auto& image) { return content_of_image(image); });
+                                   [this](const auto& image) { return content_of_file(image); });
     look_at_pixels(scene);
     // What there is to warn of is to be said by each command.
     if (warning_count() == warnings)
@@ -266,7 +294,7 @@ void Inputs::remember() {
   Transaction transaction(database_.connection());
   for (const NewModel& model : new_models_) {
     if (model.stamp) database_.put_content(model.file, *model.stamp, model.content);
-    database_.put_model(model.content, k_mesh_reader_version, model.known);
+    database_.put_model(model.whole, k_mesh_reader_version, model.known);
   }
   for (const NewContent& image : new_contents_)
     database_.put_content(image.file, image.stamp, image.content);

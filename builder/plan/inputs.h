@@ -128,14 +128,16 @@ class Inputs {
   };
   const ModelFacts& model(const std::filesystem::path& file);
   KnownModel look_at_model(const std::filesystem::path& file);
-  Hash128 content_of_image(const std::filesystem::path& file);
+  Hash128 content_of_file(const std::filesystem::path& file);
+  /// Of a model file and of the files that hold its parts.
+  Hash128 content_with_parts(const std::filesystem::path& file, const Hash128& content);
   std::optional<InputBounds> image_bounds(const Image& image);
   void look_at_pixels(Scene& scene);
 
   struct NewModel {
     std::filesystem::path file;
     std::optional<FileStamp> stamp;
-    Hash128 content;
+    Hash128 content, whole;  ///< of the file, and with its parts
     KnownModel known;
   };
 
@@ -146,7 +148,7 @@ class Inputs {
   Known<EnvironmentFacts> environment_facts_;
   std::string program_;  ///< running_program
   std::map<std::string, std::string> new_known_;
-  Known<Hash128> contents_;  ///< of images
+  Known<Hash128> contents_;  ///< of images and models' parts
   struct NewContent {
     std::filesystem::path file;
     FileStamp stamp;

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Mesh formats and models' names, from folder to files: one body in each format gives the same pixels."""
+import base64
 import json
 import struct
 
@@ -31,6 +32,29 @@ def stl(header=b"solid box"):
     return header.ljust(80) + struct.pack("<I", len(TRIANGLES)) + body
 
 
+def gltf(data, buffer):
+    """Corners as they are, then indices; of a buffer that `buffer` tells."""
+    return json.dumps({
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 8},
+                      {"bufferView": 1, "componentType": 5123, "type": "SCALAR", "count": 36}],
+        "bufferViews": [{"buffer": 0, "byteLength": 96}, {"buffer": 0, "byteOffset": 96, "byteLength": 72}],
+        "buffers": [{"byteLength": len(data), **buffer}]}).encode()
+
+
+def gltf_data(scale=1):
+    return (struct.pack("<24f", *(c * scale for place in PLACES for c in place))
+            + struct.pack("<36H", *(v for t in TRIANGLES for v in t)))
+
+
+def glb():
+    text, data = gltf(gltf_data(), {}), gltf_data()
+    text = text.ljust((len(text) + 3) // 4 * 4)
+    chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(data), b"BIN\0") + data
+    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+
 class FormatsTest(TinyCase):
     def put(self, name, data):
         path = self.tiny / "models" / name
@@ -43,17 +67,37 @@ class FormatsTest(TinyCase):
 
     def test_one_body_is_the_same_pixels_in_every_format(self):
         (self.tiny / "models/tetra.ply").unlink()
-        for name, data in (("box.ply", ply()), ("box.obj", obj()), ("box.STL", stl())):
+        for name, data in (("box.ply", ply()), ("box.obj", obj()), ("box.STL", stl()), ("box.glb", glb()),
+                           ("box.gltf", gltf(gltf_data(), {"uri": "data:;base64,"
+                                                           + base64.b64encode(gltf_data()).decode()}))):
             self.put(name, data)
         # In one place: which is a model's is chosen by its name.
         self.build(*PLANES, "--set", f'environments.files=["{self.tiny}/environments/floor"]')
         wanted = self.files("box.off")
         self.assertEqual(len(wanted), 4 * 4)
-        for name in ("box.ply", "box.obj", "box.STL"):
+        for name in ("box.ply", "box.obj", "box.STL", "box.glb", "box.gltf"):
             self.assertEqual(self.files(name), wanted, name)
         table = self.run_it("models", self.recipe).out
         for name, faces in (("box.obj", 6), ("box.STL", 12)):
             self.assertRegex(table, rf"(?m)^{name} +8 +{faces} +12")
+
+    def test_a_file_that_holds_a_part_of_a_model_is_an_input(self):
+        self.put("box.gltf", gltf(gltf_data(), {"uri": "parts/box.bin"}))
+        self.put("parts/box.bin", gltf_data())
+        self.build(*PLANES)
+        before = self.files("box.gltf")
+        self.assert_counts(self.build(*PLANES), built=0)
+        moved = struct.pack("<3f", -1.5, -1, -2) + gltf_data()[12:]
+        self.put("parts/box.bin", moved)
+        self.assert_counts(self.build(*PLANES), built=4)
+        self.assertNotEqual(self.files("box.gltf"), before)
+        run = self.run_it("import", self.tiny / "models", "-o", self.folder / "copy", "--copy")
+        self.assertEqual(run.code, 0, run)
+        self.assertEqual((self.folder / "copy/models/parts/box.bin").read_bytes(), moved)
+        (self.tiny / "models/parts/box.bin").unlink()
+        run = self.run_it("build", self.recipe, "-o", self.out, *PLANES)
+        self.assertNotEqual(run.code, 0, run)
+        self.assertIn("box.bin", run.err)
 
     def test_materials_of_a_file_are_said_once_and_no_concern(self):
         self.put("a.obj", obj("mtllib not_there.mtl\nusemtl red\n"))

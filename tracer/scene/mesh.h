@@ -83,6 +83,7 @@ struct MeshReport {
   std::uint64_t unused_attributes = 0;  ///< facets with numbers that may be colours
   std::uint64_t unused_elements = 0;    ///< lines, points and curves
   std::uint64_t unused_surfaces = 0;    ///< of other kinds than faces
+  std::uint64_t unused_poses = 0;       ///< meshes that are bent by joints or morphed
   std::uint64_t unknown_lines = 0;      ///< that begin with no word of the format
   std::uint64_t zero_area = 0;          ///< triangles removed: no area
   std::uint64_t duplicate_faces = 0;  ///< triangles removed: the same three corner positions as an
@@ -175,6 +176,8 @@ inline constexpr std::array k_mesh_report_columns{
                      "are lines, points or curves, which have no surface, and are not read"},
     MeshReportColumn{"unused_surfaces", &MeshReport::unused_surfaces,
                      "surfaces that are not made of faces not read", nullptr, nullptr, true},
+    MeshReportColumn{"unused_poses", &MeshReport::unused_poses, nullptr,
+                     "are meshes that joints bend or that morph, and are shown as they are stored"},
     MeshReportColumn{"unknown_lines", &MeshReport::unknown_lines,
                      "lines that begin with no word of the format not read"},
     MeshReportColumn{"zero_area", &MeshReport::zero_area},
@@ -222,7 +225,14 @@ enum class Winding { outwards, as_stored };
 /// reserves memory on the word of a header alone.
 Model read_model(const std::filesystem::path& file, Winding winding = Winding::outwards);
 
-/// The same for a file already in memory; `name` stands for the path in messages.
+/// The files beside a model's own that hold a part of it (a glTF file's buffers): what it is, changes with them. Throws
+/// what read_model throws of a file that names others as none may be named.
+std::vector<std::filesystem::path> model_parts(const std::filesystem::path& file);
+/// By its name: whether there is anything to ask.
+bool may_have_parts(const std::filesystem::path& file);
+
+/// The same for a file already in memory; `name` stands for the path in messages, and is that beside which files lie
+/// that hold a part of it.
 Model parse_model(std::string_view bytes, const std::string& name,
                   Winding winding = Winding::outwards);
 

@@ -67,6 +67,12 @@ std::string mesh_endings_text(std::string_view last_joint) {
   return joined(mesh_endings(), last_joint);
 }
 
+bool has_ending_of(const MeshFormat& format, const std::filesystem::path& file) {
+  const std::vector<std::string_view> endings = split(format.endings);
+  return std::any_of(endings.begin(), endings.end(),
+                     [&](std::string_view ending) { return has_ending(file, ending); });
+}
+
 bool has_mesh_ending(const std::filesystem::path& file) {
   const std::vector<std::string_view> endings = mesh_endings();
   return std::any_of(endings.begin(), endings.end(),

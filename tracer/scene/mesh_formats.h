@@ -22,6 +22,10 @@ struct MeshFormat {
   bool (*matches)(std::string_view bytes, const std::string& file);
   /// `name` stands for the path in messages. Throws Error(asset).
   Polygons (*read)(std::string_view bytes, const std::string& name);
+  /// The files beside it that a file holds its parts in, as `read` opens them; null for kinds that have none. Throws as
+  /// `read` does.
+  std::vector<std::filesystem::path> (*parts)(std::string_view bytes,
+                                              const std::string& name) = nullptr;
 };
 
 /// All, in the order in which they are asked whether a file is theirs.
@@ -33,7 +37,8 @@ std::string mesh_format_names();
 std::vector<std::string_view> mesh_endings();
 /// ".ply or .off", with another last joint where it is given: ".ply and .off".
 std::string mesh_endings_text(std::string_view last_joint = " or ");
-/// Whether it has one of the formats'.
+/// Whether a file has one of the format's, and one of any's.
+bool has_ending_of(const MeshFormat& format, const std::filesystem::path& file);
 bool has_mesh_ending(const std::filesystem::path& file);
 
 /// Table of the formats, for recipes/README.md.

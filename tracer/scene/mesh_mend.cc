@@ -257,6 +257,7 @@ Model mend(Polygons polygons, const std::string& name, Winding winding) {
   report.unused_attributes = polygons.unused.attributes;
   report.unused_elements = polygons.unused.elements;
   report.unused_surfaces = polygons.unused.surfaces;
+  report.unused_poses = polygons.unused.poses;
   report.unknown_lines = polygons.unused.lines;
   report.missing_uvs = polygons.missing.uvs;
   report.missing_colors = polygons.missing.colors;

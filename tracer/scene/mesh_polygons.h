@@ -24,7 +24,7 @@ struct DarkColors {
 /// What a reader passes over, see MeshReport.
 struct UnusedParts {
   std::uint64_t places = 0, normals = 0, uvs = 0, colors = 0;
-  std::uint64_t materials = 0, attributes = 0, elements = 0, surfaces = 0, lines = 0;
+  std::uint64_t materials = 0, attributes = 0, elements = 0, surfaces = 0, lines = 0, poses = 0;
 };
 /// What a file gives to others of its corners, vertices or faces, see MeshReport.
 struct MissingParts {

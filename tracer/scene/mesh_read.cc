@@ -6,6 +6,8 @@
 #include "tracer/scene/mesh_formats.h"
 #include "tracer/scene/mesh_text.h"
 
+#include <algorithm>
+
 namespace ds {
 
 Model parse_model(std::string_view bytes, const std::string& name, Winding winding) {
@@ -18,6 +20,23 @@ Model parse_model(std::string_view bytes, const std::string& name, Winding windi
          mesh_format_names());
   fail(ErrorKind::asset, "{}: wanted a mesh file ({}), found one that begins \"{}\"", name,
        mesh_format_names(), printable(bytes.substr(0, 16)));
+}
+
+std::vector<std::filesystem::path> model_parts(const std::filesystem::path& file) {
+  for (const MeshFormat* format : mesh_formats()) {
+    if (format->parts == nullptr || !has_ending_of(*format, file)) continue;
+    const std::string bytes = read_text_file(file);
+    const std::string_view text = without_bom(bytes);
+    if (format->matches(text, file.string())) return format->parts(text, file.string());
+  }
+  return {};
+}
+
+bool may_have_parts(const std::filesystem::path& file) {
+  const auto formats = mesh_formats();
+  return std::any_of(formats.begin(), formats.end(), [&](const MeshFormat* format) {
+    return format->parts != nullptr && has_ending_of(*format, file);
+  });
 }
 
 Model read_model(const std::filesystem::path& file, Winding winding) {

@@ -30,7 +30,7 @@ TEST(MeshFormats, EndingsAreInAnyCaseAndNothingElse) {
 }
 
 TEST(MeshFormats, AreNamedInMessagesHelpAndReference) {
-  EXPECT_THAT(mesh_format_names(), testing::MatchesRegex("PLY.* or [A-Z]+"));
+  EXPECT_THAT(mesh_format_names(), testing::MatchesRegex("PLY.* or [A-Za-z]+"));
   EXPECT_THAT(mesh_endings_text(" and "), testing::MatchesRegex("\\.ply.* and \\.[a-z]+"));
   for (const MeshFormat* format : mesh_formats())
     EXPECT_THAT(mesh_format_reference(),
