@@ -23,6 +23,7 @@ struct Arguments {
   std::string database_folder;
   std::string shard;  ///< empty: all images
   std::uint64_t rerender = 0, seed = 0;
+  double stall_seconds = 900;
   std::string format, export_folder, gallery_folder, diff_folder, hierarchy;
   std::string import_from, import_psb, import_folder;
   std::vector<std::string> splits, filters, only;
@@ -84,6 +85,7 @@ enum class Option {
   dry_run,
   keep_going,
   force,
+  stall,
   rehash,
   adopt,
   copy,

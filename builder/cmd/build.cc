@@ -3,6 +3,7 @@
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/progress.h"
 #include "builder/cmd/stop_signal.h"
+#include "builder/cmd/supervisor.h"
 #include "builder/cmd/verbs.h"
 #include "builder/make/execute.h"
 #include "builder/make/sole_plan.h"
@@ -39,6 +40,7 @@ nlohmann::json to_json(const BuildResult& result, const Dataset& dataset) {
           {"traced", result.traced},
           {"developed", result.developed},
           {"traced_samples", result.traced_samples},
+          {"deaths", result.deaths},
           {"seconds", result.seconds},
           {"device", result.device},
           {"programs", result.programs.programs},
@@ -70,8 +72,8 @@ void print_capped(BuildResult result, const Recipe& recipe) {
 
 void print_result(const BuildResult& result, const Dataset& dataset) {
   const std::string from_store =
-      result.traced == result.built ? ""
-      : result.traced == 0          ? " from the store"
+      result.traced == result.built || result.deaths > 0 ? ""
+      : result.traced == 0                               ? " from the store"
                            : fmt::format(" ({} traced, the others from the store)", result.traced);
   std::string text =
       fmt::format("{}: {} images: {} built{}, {} reused, {} failed", dataset.recipe.name,
@@ -82,6 +84,9 @@ void print_result(const BuildResult& result, const Dataset& dataset) {
   if (result.removed_files > 0)
     text += fmt::format(", {} file{} removed that no image of the recipe has", result.removed_files,
                         result.removed_files == 1 ? "" : "s");
+  if (result.deaths > 0)
+    text += fmt::format(", {} process{} died on the way", result.deaths,
+                        result.deaths == 1 ? "" : "es");
   text += fmt::format(", in {:.1f} s", result.seconds);
   if (result.traced_samples > 0)
     text += fmt::format("; {} traced on {}", format_samples(result.traced_samples), result.device);
@@ -155,7 +160,8 @@ int dry_run(const Arguments& arguments, const Recipe& recipe, const Plan& plan,
 }  // namespace
 
 int run_build(const Arguments& arguments) {
-  const BuildOptions build_options{arguments.keep_going, arguments.force, arguments.copy};
+  const BuildOptions build_options{arguments.keep_going, arguments.force, arguments.copy,
+                                   earlier_processes()};
   // What the command is for lies in files: a reader of its text who goes away does not end it.
   if (!arguments.dry_run) std::signal(SIGPIPE, SIG_IGN);
   const Shard shard = shard_of(arguments);
@@ -194,7 +200,8 @@ int run_build(const Arguments& arguments) {
     // Only now: planning may be ended anywhere, and needs nobody to wait for it.
     const std::atomic<bool>& stop = stop_on_signal();
     Progress progress(arguments.keep_going);
-    result = execute(dataset, plan, inputs, build_options, disk, factory, progress, stop);
+    WatchedObserver watched(progress, arguments.stall_seconds);
+    result = execute(dataset, plan, inputs, build_options, disk, factory, watched, stop);
   }
   for (const auto& [what, why] : result.failures)
     say(Stream::people, "dsbuild: error: {}: {}\n", what, why);

@@ -3,6 +3,7 @@
 #include "builder/cmd/error_text.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/stop_signal.h"
+#include "builder/cmd/supervisor.h"
 #include "builder/db/sqlite.h"
 #include "tracer/base/error.h"
 #include "tracer/base/streams.h"
@@ -54,6 +55,8 @@ int run(std::span<const char* const> arguments) {
 
 int main(int count, char** arguments) {
   ds::reserve_standard_streams();
+  if (count > 1 && std::string_view(arguments[1]) == "build")
+    if (const auto code = ds::watch_over_build()) return *code;
   ds::watch_signals();
   // A file over `ulimit -f` is then an error of one write, as on a full disk, and not the end of
   // the process.
@@ -64,5 +67,6 @@ int main(int count, char** arguments) {
     code = code == 0 ? 1 : code;
   }
   ds::die_of_stop_signal();
+  ds::tell_end_of_build();
   return code;
 }

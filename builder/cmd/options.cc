@@ -207,6 +207,12 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
     case Option::force:
       verb.add_flag("--force", to.force, "trace every image again");
       return;
+    case Option::stall:
+      add_number(
+          verb, "--stall", to.stall_seconds, {.least = 0, .most = 1e9},
+          "seconds without a sign of life after which an image is ended and tried once more, "
+          "as where the device crashed; 0: never [900]");
+      return;
     case Option::rehash:
       verb.add_flag("--rehash", to.rehash,
                     "read every model and output, also where size, times and inode are as before");

@@ -12,7 +12,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What a user, a terminal or a batch system ends a process by. LSF and Grid Engine send SIGUSR1,
+/// LSF and Grid Engine send SIGUSR1,
 /// SIGUSR2 or SIGXCPU before their SIGKILL, Slurm what its --signal says.
 constexpr int k_signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGUSR1, SIGUSR2};
 
@@ -37,30 +37,27 @@ sigset_t set_of(int signal) {
   return set;
 }
 
-void die_of(int signal) {
-  std::signal(signal, SIG_DFL);
-  const sigset_t one = set_of(signal);
-  ::pthread_sigmask(SIG_UNBLOCK, &one, nullptr);
-  std::raise(signal);
-}
-
 void watch(sigset_t signals) {
   std::optional<Clock::time_point> since;  // the first wish
   for (;;) {
     int signal = 0;
     if (::sigwait(&signals, &signal) != 0) continue;
-    if (!g_armed) die_of(signal);
+    if (!g_armed) die_of_signal(signal);
     if (!since) {
       since = Clock::now();
       g_signal = signal;
       g_stop = true;
     } else if (is_users(signal) && Clock::now() - *since > k_one_wish) {
-      die_of(signal);
+      die_of_signal(signal);
     }
   }
 }
 
 }  // namespace
+
+std::span<const int> stop_signals() {
+  return k_signals;
+}
 
 void watch_signals() {
   sigset_t signals;
@@ -88,8 +85,15 @@ bool stopped_by_signal() {
   return g_stop;
 }
 
+void die_of_signal(int signal) {
+  std::signal(signal, SIG_DFL);
+  const sigset_t one = set_of(signal);
+  ::pthread_sigmask(SIG_UNBLOCK, &one, nullptr);
+  std::raise(signal);
+}
+
 void die_of_stop_signal() {
-  if (g_stop) die_of(g_signal);
+  if (g_stop) die_of_signal(g_signal);
 }
 
 }  // namespace ds

@@ -2,8 +2,12 @@
 #pragma once
 
 #include <atomic>
+#include <span>
 
 namespace ds {
+
+/// What a user, a terminal or a batch system ends a process by.
+std::span<const int> stop_signals();
 
 /// To be called once, before any thread is started. A thread waits for the signals from then on, and
 /// all others block them: OpenCL's compiler handles signals in its own way once it is loaded, and
@@ -23,5 +27,6 @@ bool stopped_by_signal();
 /// script too, and the exit status says which signal it was (128 + its number). Returns where none
 /// has.
 void die_of_stop_signal();
+void die_of_signal(int signal);
 
 }  // namespace ds

@@ -9,7 +9,7 @@ const std::vector<Verb>& verbs() {
       {"build",
        "make every image of a recipe that is not there yet",
        {target, overrides, output_folder, store_folder, database_folder, shard, device, dry_run,
-        keep_going, force, rehash, adopt, copy, explain, verbose, strict, json},
+        keep_going, force, stall, rehash, adopt, copy, explain, verbose, strict, json},
        run_build},
       {"plan",
        "list the images a build would make, and why; or forecast its time and disk",

@@ -74,6 +74,9 @@ class Execution {
 
   void enter_dataset();
   Queue sort_images();
+  const CrashedImage* crash_of(const PlannedImage& image) const;
+  void count_earlier();
+  bool is_careful() const { return options_.earlier.deaths > 0; }
   void make_all(Queue queue);
   void expect_next_scene(const Queue& queue, const PlannedImage& image);
   bool make_one(const PlannedImage& image);
@@ -108,7 +111,8 @@ class Execution {
   ImageMaker maker_;
   BuildResult result_;
   std::unordered_set<const PlannedImage*> made_;  ///< by this build
-  const PlannedImage* last_started_ = nullptr;    ///< the first of its scene
+  std::uint64_t to_make_ = 0, crashed_ = 0;
+  const PlannedImage* last_started_ = nullptr;  ///< the first of its scene
   /// Of images under way, until they are kept: another process would make them too.
   std::unordered_map<const PlannedImage*, Claims::Claim> claims_;
   std::map<std::string, std::vector<std::string>> failures_;  ///< image ids by what went wrong
@@ -153,6 +157,13 @@ Execution::Queue Execution::sort_images() {
     ++result_.images;
     if (image.error) {
       fail_image(image, image.error->what());
+    } else if (const CrashedImage* crash = crash_of(image);
+               crash != nullptr && crash->times >= k_most_crashes) {
+      // Told by who saw it.
+      failures_[fmt::format("the process that made it {}, {} times", crash->how, crash->times)]
+          .push_back(image.spec.id);
+      ++result_.failed;
+      ++crashed_;
     } else if (image.stale()) {
       if (options_.copy) maker_.keeper().part_from_store(image);
       queue.push_back(&image);
@@ -165,11 +176,38 @@ Execution::Queue Execution::sort_images() {
   std::stable_sort(queue.begin(), queue.end(), [](const PlannedImage* a, const PlannedImage* b) {
     return scene_of(a->spec) < scene_of(b->spec);
   });
+  to_make_ = queue.size() + crashed_;
+  if (is_careful())
+    std::stable_partition(queue.begin(), queue.end(), [this](const PlannedImage* image) {
+      return crash_of(*image) != nullptr;
+    });
   return queue;
+}
+
+const CrashedImage* Execution::crash_of(const PlannedImage& image) const {
+  const std::vector<CrashedImage>& crashed = options_.earlier.crashed;
+  const auto found = std::find_if(crashed.begin(), crashed.end(),
+                                  [&](const CrashedImage& one) { return one.id == image.spec.id; });
+  return found != crashed.end() ? &*found : nullptr;
+}
+
+/// What earlier processes made is built, not reused. With `force` it is made again.
+void Execution::count_earlier() {
+  const EarlierProcesses& earlier = options_.earlier;
+  result_.deaths = earlier.deaths;
+  if (options_.force) return;
+  const std::uint64_t made =
+      std::min(earlier.to_make - std::min(earlier.to_make, to_make_), result_.reused);
+  result_.built += made;
+  result_.reused -= made;
+  result_.traced += earlier.traced;
+  result_.developed += earlier.developed;
+  result_.traced_samples += earlier.samples;
 }
 
 /// Looks on from the first image of a scene, once, to the next scene of which anything is traced.
 void Execution::expect_next_scene(const Queue& queue, const PlannedImage& image) {
+  if (is_careful()) return;
   if (last_started_ != nullptr && scene_of(last_started_->spec) == scene_of(image.spec)) return;
   last_started_ = &image;
   const auto next = std::find_if(queue.begin(), queue.end(), [&](const PlannedImage* other) {
@@ -234,20 +272,23 @@ void Execution::make_all(Queue queue) {
   for (const PlannedImage* image : queue)
     samples += image->traces_paths() ? image->samples() : 0;
   observer_.started(queue.size(), samples);
-  maker_.announce(one_of_each_kind(queue));
+  if (!is_careful()) maker_.announce(one_of_each_kind(queue));
   std::size_t put_back = 0;  // images in a row that others are making
   while (!queue.empty() && !cut_short()) {
     const PlannedImage* image = queue.front();
     queue.pop_front();
     expect_next_scene(queue, *image);
     const bool started = make_one(*image);
+    if (is_careful()) maker_.keeper().finish();
     take_kept();
     if (started) {
       put_back = 0;
       continue;
     }
     queue.push_back(image);
-    if (++put_back >= queue.size()) std::this_thread::sleep_for(k_claim_poll);
+    if (++put_back < queue.size()) continue;
+    observer_.waiting();
+    std::this_thread::sleep_for(k_claim_poll);
   }
   maker_.keeper().finish();
   take_kept();
@@ -430,6 +471,7 @@ BuildResult Execution::run() {
   if (anything_to_do()) begin();
   clean_up_killed_builds(dataset_, build_number_);
   make_all(sort_images());
+  count_earlier();
   collect_failures();
   result_.not_reached = result_.images - result_.built - result_.reused - result_.failed;
   result_.device = maker_.device();

@@ -13,10 +13,32 @@
 
 namespace ds {
 
+/// An image during which processes died that made it, and how the last one did: "died of signal 11
+/// (Segmentation fault)".
+struct CrashedImage {
+  std::string id, how;
+  int times = 1;
+};
+
+/// Processes that die with an image before it counts as failed.
+inline constexpr int k_most_crashes = 2;
+
+/// What processes before this one made of the same build.
+struct EarlierProcesses {
+  std::vector<CrashedImage> crashed;
+  std::uint64_t deaths = 0;
+  std::uint64_t to_make = 0;  ///< images, when the first began
+  /// Of what they made, as far as they came to tell.
+  std::uint64_t traced = 0, developed = 0, samples = 0;
+};
+
 struct BuildOptions {
   bool keep_going = false;  ///< make the images that can be made where others fail
   bool force = false;       ///< trace every image again
   bool copy = false;        ///< no file shares anything with the store
+  /// Where some died, nothing is done beside the image under way, so that it is known which one it
+  /// is if one dies again, and what they died at comes first.
+  EarlierProcesses earlier = {};
   /// When what the user started began; BuildResult::seconds counts from here.
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
 };
@@ -32,6 +54,7 @@ struct BuildResult {
   std::uint64_t traced = 0;          ///< of the built: something was traced
   std::uint64_t developed = 0;       ///< of the built: a picture was made from a film
   std::uint64_t traced_samples = 0;  ///< camera samples, over all pixels
+  std::uint64_t deaths = 0;          ///< processes that died on the way
   ProgramCounts programs;
   double seconds = 0;        ///< of all of it, planning too
   std::string device;        ///< empty where nothing was traced
@@ -57,6 +80,8 @@ class BuildObserver {
   virtual void progress(const PlannedImage& /*image*/, const TraceProgress& /*progress*/) {}
   virtual void image_done(const PlannedImage& /*image*/, const ImageWork& /*work*/) {}
   virtual void image_failed(const PlannedImage& /*image*/, const std::string& /*why*/) {}
+  /// Every image left is being made by other processes.
+  virtual void waiting() {}
 };
 
 /// Makes what the plan found stale: images of one scene one after another, so that a scene is

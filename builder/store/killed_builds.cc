@@ -3,11 +3,14 @@
 
 #include "builder/store/build_ending.h"
 #include "builder/store/host.h"
+#include "tracer/base/error.h"
 
 #include <cerrno>
 #include <charconv>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,10 +21,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Whether the process has ended and only waits for one that asks how: for ever, where the first
+/// process of a container asks for none.
+bool has_ended(std::int64_t process) {
+  std::ifstream file(fmt::format("/proc/{}/stat", process));
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  const std::size_t name_end = text.rfind(')');
+  return name_end != std::string::npos && name_end + 2 < text.size() &&
+         (text[name_end + 2] == 'Z' || text[name_end + 2] == 'X');
+}
+
 /// Whether another process of this number runs on this machine.
 bool runs_elsewhere(std::int64_t process) {
   if (process == ::getpid()) return false;
-  return ::kill(static_cast<pid_t>(process), 0) == 0 || errno == EPERM;
+  const bool is_there = ::kill(static_cast<pid_t>(process), 0) == 0 || errno == EPERM;
+  return is_there && !has_ended(process);
 }
 
 /// The process in a name that write_file_atomic gives a temporary, ".NAME.PROCESS.COUNT.tmp".

@@ -2,6 +2,7 @@
 """Whose a dataset's folder is, builds of one folder at once, folders that were moved, and files that are edited."""
 import json
 import os
+import pathlib
 import shutil
 import stat
 import subprocess
@@ -233,9 +234,10 @@ class FolderTest(TinyCase):
         while not list(self.out.glob("images/*/*.png")):
             self.assertIsNone(first.poll(), "it ended by itself")
             time.sleep(0.02)
+        builds = pathlib.Path(f"/proc/{first.pid}/task/{first.pid}/children").read_text().strip()
         second = self.run_it("build", self.recipe, "-o", self.out)
         first.communicate(timeout=300)
-        self.assertRegex(second.err, rf"waiting for another build that makes something else: process {first.pid} on "
+        self.assertRegex(second.err, rf"waiting for another build that makes something else: process {builds} on "
                                      r".*recipe\.toml --set engine\.spp=2000")
         self.assertEqual(self.in_place(), self.listed())
         self.assertEqual(self.run_it("verify", self.out).code, 0)

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/make/execute.h"
+
+#include <optional>
+
+namespace ds {
+
+/// Splits `dsbuild build` in two: a process that builds, and this one, which watches it and begins
+/// another where it dies of what no error can be made of (a driver's crash, an abort, the system
+/// short of memory) or shows no sign of life. What is made is made: the next process goes on, and
+/// is told during which image it happened. Called before anything else of the process begins.
+///
+/// Nothing: this is the process that builds (or nobody watches it, where the system gives no second
+/// process). Else the exit code; signals that end the one end the other likewise.
+std::optional<int> watch_over_build();
+
+/// In the process that builds: what earlier ones came to. Empty where nobody watches.
+EarlierProcesses earlier_processes();
+/// In the process that builds: that it has told all it has to tell, whatever its exit code.
+void tell_end_of_build();
+
+/// Tells the watching process what goes on, and passes it on.
+class WatchedObserver : public BuildObserver {
+ public:
+  /// `hang_seconds`: an image that shows no sign of life for so long is taken to hang; 0: none is.
+  WatchedObserver(BuildObserver& observer, double hang_seconds);
+  ~WatchedObserver() override;
+
+  void started(std::uint64_t images, std::uint64_t samples) override;
+  void image_started(const PlannedImage& image) override;
+  void progress(const PlannedImage& image, const TraceProgress& progress) override;
+  void image_done(const PlannedImage& image, const ImageWork& work) override;
+  void image_failed(const PlannedImage& image, const std::string& why) override;
+  void waiting() override;
+
+ private:
+  BuildObserver& observer_;
+};
+
+}  // namespace ds

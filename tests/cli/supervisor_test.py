@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A device that crashes, hangs or ends the process (device_shim.c) costs one image, and the rest is made."""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+from harness import IMAGES, SAMPLES, TinyCase, main
+
+VIEWS = 4
+BYTES = 1 << 20  # more than any buffer of the tiny scenes, less than the triangles of the model below
+
+
+class SupervisorTest(TinyCase):
+    shim = ""
+
+    def setUp(self):
+        super().setUp()
+        # A strip of 40,000 triangles, as a model that no other scene is as large as.
+        count = 20000
+        points = [f"{i * 1e-3} {side} {side * 0.2}" for i in range(count + 1) for side in (0, 1)]
+        faces = [f"3 {2 * i} {2 * i + 1} {2 * i + 2}\n3 {2 * i + 1} {2 * i + 3} {2 * i + 2}" for i in range(count)]
+        (self.tiny / "models/large.off").write_text(f"OFF\n{len(points)} {2 * count} 0\n" + "\n".join(points + faces) + "\n")
+
+    def environment(self, how, once=False):
+        variables = {**os.environ, "LD_PRELOAD": self.shim, "DS_SHIM": how, "DS_SHIM_BYTES": str(BYTES)}
+        if once:
+            variables["DS_SHIM_ONCE"] = str(self.folder / "once")
+        return variables
+
+    def listed(self):
+        lines = (self.out / "manifest/images.jsonl").read_text().splitlines()
+        return sorted(json.loads(line)["id"] for line in lines)
+
+    def test_an_image_that_crashes_fails_and_the_rest_goes_on(self):
+        for how, told in (("segv", "died of signal 11 (Segmentation fault)"), ("abort", "died of signal 6 (Aborted)"),
+                          ("exit", "ended with exit code 7 in the middle of its work"),
+                          ("kill", "died of signal 9 (Killed)")):
+            run = self.run_it("build", self.recipe, "-o", self.out, "-k", "--json", env=self.environment(how))
+            self.assertEqual(run.code, 1, run)
+            counts = run.json
+            # Each of its images is tried twice.
+            self.assert_counts(counts, images=IMAGES + VIEWS, built=IMAGES, reused=0, failed=VIEWS, not_reached=0,
+                               deaths=2 * VIEWS)
+            # What was kept as the process died it could not tell any more.
+            self.assertTrue(0 < counts["traced"] <= IMAGES, counts)
+            self.assertEqual(counts["traced_samples"], counts["traced"] * SAMPLES)
+            self.assertIn(f"large.off/0: the process that made it {told}; it is tried once more", run.err)
+            self.assertIn(f"large.off/0: the process that made it {told}, again", run.err)
+            self.assertEqual(len(counts["failures"]), 1, counts)
+            self.assertEqual(counts["failures"][0]["why"], f"the process that made it {told}, 2 times")
+            self.assertEqual([id for id in self.listed() if id.startswith("large")], [])
+            self.assertEqual(len(self.listed()), IMAGES)
+            self.assertEqual(run.err.count("large.off/0"), 3, run)
+            # What was made is whole, and a device that is well makes the rest.
+            self.assertIn(f"{IMAGES} images, {2 * IMAGES} files: {VIEWS} differences", self.run_it("verify", self.out).out)
+            self.assert_counts(self.build(), built=VIEWS, reused=IMAGES, deaths=0)
+            subprocess.run(["rm", "-rf", str(self.out)], check=True)
+
+    def test_without_keep_going_it_ends_as_at_any_failure(self):
+        run = self.run_it("build", self.recipe, "-o", self.out, "--json", env=self.environment("segv"))
+        self.assertEqual(run.code, 1, run)
+        self.assertEqual(run.json["failed"], 1)
+        self.assertEqual(run.json["deaths"], 2)
+
+    def test_once_is_no_failure_and_gives_the_same_bytes(self):
+        whole = self.folder / "whole"
+        self.build(out=whole)
+        for how in ("segv", "hang"):
+            run = self.run_it("build", self.recipe, "-o", self.out, "--stall", "2", "--json",
+                              env=self.environment(how, once=True))
+            self.assertEqual(run.code, 0, run)
+            self.assert_counts(run.json, built=IMAGES + VIEWS, reused=0, failed=0, deaths=1)
+            self.assertEqual(self.contents(), self.contents(whole))
+            subprocess.run(["rm", "-rf", str(self.out), str(self.folder / "once")], check=True)
+
+    def test_an_image_that_hangs_is_ended(self):
+        run = self.run_it("build", self.recipe, "-o", self.out, "-k", "--stall", "1", "--json", "--set", "camera.views=[0]",
+                          env=self.environment("hang"))
+        self.assertEqual(run.code, 1, run)
+        self.assert_counts(run.json, built=2, failed=1, deaths=2)
+        self.assertEqual(run.json["failures"][0]["why"],
+                         "the process that made it showed no sign of life for 1 s, 2 times")
+        self.assertEqual(self.run_it("build", self.recipe, "--stall", "-1").code, 2)
+
+    def test_a_device_that_crashes_at_everything_is_given_up(self):
+        environment = {**self.environment("segv"), "DS_SHIM_BYTES": "1"}
+        run = self.run_it("build", self.recipe, "-o", self.out, "-k", env=environment)
+        self.assertEqual(run.code, 128 + signal.SIGSEGV, run)
+        self.assertIn("10 processes in a row died with no image made", run.err)
+
+    def test_to_stop_a_process_that_hangs_ends_both(self):
+        process = self.start("build", self.recipe, "-o", self.out, env=self.environment("hang"))
+        time.sleep(1)
+        process.send_signal(signal.SIGTERM)
+        time.sleep(0.5)
+        process.send_signal(signal.SIGTERM)  # the second wish does not wait for what is under way
+        process.communicate(timeout=20)
+        self.assertEqual(process.returncode, -signal.SIGTERM)
+        self.assertEqual(self.others(), [])
+
+    def test_killed_it_leaves_no_process(self):
+        process = self.start("build", self.recipe, "-o", self.out, env=self.environment("hang"))
+        time.sleep(1)
+        process.kill()
+        process.communicate(timeout=20)
+        end = time.monotonic() + 20
+        while self.others() and time.monotonic() < end:
+            time.sleep(0.05)
+        self.assertEqual(self.others(), [])
+        counts = self.build()
+        self.assert_counts(counts, built=IMAGES + VIEWS - counts["reused"], failed=0)
+
+    def others(self):
+        """Processes that make this dataset and have not ended."""
+        found = []
+        for process in pathlib.Path("/proc").glob("[0-9]*"):
+            try:
+                command, status = (process / "cmdline").read_bytes(), (process / "stat").read_text()
+            except OSError:  # it has ended meanwhile
+                continue
+            if str(self.out).encode() in command and status.rpartition(")")[2].split()[0] not in "ZX":
+                found.append(int(process.name))
+        return found
+
+
+if __name__ == "__main__":
+    SupervisorTest.shim = os.path.abspath(sys.argv.pop())
+    main()
