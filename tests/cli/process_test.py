@@ -16,7 +16,7 @@ from harness import IMAGES, TinyCase, main
 
 # What users, terminals and batch systems end a process by.
 STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGXCPU, signal.SIGUSR1, signal.SIGUSR2)
-SLOW = ["--set", "engine.spp=6000"]  # an image takes long enough to be interrupted
+SLOW = ["--set", "engine.spp=2000"]  # an image takes a second, long enough to be interrupted
 
 
 class ProcessCase(TinyCase):
