@@ -130,9 +130,9 @@ TEST(FilmErrorTest, estimates_the_error_against_a_converged_picture) {
     pictures_seen += count;
     RecordProperty("covered_of_40_" + std::to_string(pictures_seen / count), covered_here);
   }
-  EXPECT_EQ(pictures_seen, 200);
-  EXPECT_GE(covered, 180);
-  EXPECT_LE(covered, 198);
+  EXPECT_EQ(pictures_seen, 240);
+  EXPECT_GE(covered, 216);  // 0.90
+  EXPECT_LE(covered, 237);  // 0.99
 }
 
 }  // namespace
