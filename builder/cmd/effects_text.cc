@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/effects_text.h"
 
+#include "builder/plan/image_material.h"
 #include "builder/plan/keys.h"
 #include "tracer/base/streams.h"
 

@@ -74,7 +74,6 @@ class Execution {
 
   void enter_dataset();
   Queue sort_images();
-  const CrashedImage* crash_of(const PlannedImage& image) const;
   void count_earlier();
   bool is_careful() const { return options_.earlier.deaths > 0; }
   void make_all(Queue queue);
@@ -157,11 +156,10 @@ Execution::Queue Execution::sort_images() {
     ++result_.images;
     if (image.error) {
       fail_image(image, image.error->what());
-    } else if (const CrashedImage* crash = crash_of(image);
+    } else if (const CrashedImage* crash = options_.earlier.crash_of(image.spec.id);
                crash != nullptr && crash->times >= k_most_crashes) {
       // Told by who saw it.
-      failures_[fmt::format("the process that made it {}, {} times", crash->how, crash->times)]
-          .push_back(image.spec.id);
+      failures_[to_text(*crash)].push_back(image.spec.id);
       ++result_.failed;
       ++crashed_;
     } else if (image.stale()) {
@@ -179,16 +177,9 @@ Execution::Queue Execution::sort_images() {
   to_make_ = queue.size() + crashed_;
   if (is_careful())
     std::stable_partition(queue.begin(), queue.end(), [this](const PlannedImage* image) {
-      return crash_of(*image) != nullptr;
+      return options_.earlier.crash_of(image->spec.id) != nullptr;
     });
   return queue;
-}
-
-const CrashedImage* Execution::crash_of(const PlannedImage& image) const {
-  const std::vector<CrashedImage>& crashed = options_.earlier.crashed;
-  const auto found = std::find_if(crashed.begin(), crashed.end(),
-                                  [&](const CrashedImage& one) { return one.id == image.spec.id; });
-  return found != crashed.end() ? &*found : nullptr;
 }
 
 /// What earlier processes made is built, not reused. With `force` it is made again.
@@ -196,8 +187,7 @@ void Execution::count_earlier() {
   const EarlierProcesses& earlier = options_.earlier;
   result_.deaths = earlier.deaths;
   if (options_.force) return;
-  const std::uint64_t made =
-      std::min(earlier.to_make - std::min(earlier.to_make, to_make_), result_.reused);
+  const std::uint64_t made = std::min(earlier.made(to_make_), result_.reused);
   result_.built += made;
   result_.reused -= made;
   result_.traced += earlier.traced;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "builder/make/earlier_processes.h"
 #include "builder/make/image_maker.h"
 #include "manifests/concerns.h"
 
@@ -12,25 +13,6 @@
 #include <vector>
 
 namespace ds {
-
-/// An image during which processes died that made it, and how the last one did: "died of signal 11
-/// (Segmentation fault)".
-struct CrashedImage {
-  std::string id, how;
-  int times = 1;
-};
-
-/// Processes that die with an image before it counts as failed.
-inline constexpr int k_most_crashes = 2;
-
-/// What processes before this one made of the same build.
-struct EarlierProcesses {
-  std::vector<CrashedImage> crashed;
-  std::uint64_t deaths = 0;
-  std::uint64_t to_make = 0;  ///< images, when the first began
-  /// Of what they made, as far as they came to tell.
-  std::uint64_t traced = 0, developed = 0, samples = 0;
-};
 
 struct BuildOptions {
   bool keep_going = false;  ///< make the images that can be made where others fail

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/image_material.h"
 
+#include "builder/plan/image_scene.h"
 #include "tracer/base/canonical.h"
 #include "tracer/scene/vary_material.h"
 
@@ -63,6 +64,28 @@ void check_vary(const Recipe& recipe, Inputs& inputs) {
                       vary.pattern + "?");
   }
   diagnostics.throw_if_any();
+}
+
+namespace {
+
+/// Stands for the model where only the kinds of effects in a scene matter.
+Mesh stand_in() {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+  mesh.triangles = {{0, 1, 2}};
+  return mesh;
+}
+
+}  // namespace
+
+Scene scene_without_model(const Recipe& recipe, Inputs& inputs, const ImageSpec& image) {
+  const Scene& environment = inputs.environment(image.environment_folder);
+  const Scene material = material_of(image, recipe, inputs);
+  EnvironmentChange gain = change_of(image);
+  gain.turn_deg = 0;
+  return gain == EnvironmentChange{} ? compose(environment, material, stand_in())
+                                     : compose(changed(environment, gain), material, stand_in());
 }
 
 }  // namespace ds

@@ -17,4 +17,8 @@ std::string canonical_vary(const ImageSpec& image, const Recipe& recipe);
 /// without a "?" of one, or gives a colour to a property of one number.
 void check_vary(const Recipe& recipe, Inputs& inputs);
 
+/// The image's scene with one triangle in the model's place: all that its program depends on.
+/// Throws where a file cannot be read.
+Scene scene_without_model(const Recipe& recipe, Inputs& inputs, const ImageSpec& image);
+
 }  // namespace ds

@@ -44,25 +44,7 @@ const char* name_of(Normals normals) {
   return normals == Normals::smooth ? "smooth" : normals == Normals::keep ? "keep" : "flat";
 }
 
-/// Stands for the model where only the kinds of effects in a scene matter.
-Mesh stand_in() {
-  Mesh mesh;
-  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
-  mesh.triangles = {{0, 1, 2}};
-  return mesh;
-}
-
 }  // namespace
-
-Scene scene_without_model(const Recipe& recipe, Inputs& inputs, const ImageSpec& image) {
-  const Scene& environment = inputs.environment(image.environment_folder);
-  const Scene material = material_of(image, recipe, inputs);
-  EnvironmentChange gain = change_of(image);
-  gain.turn_deg = 0;
-  return gain == EnvironmentChange{} ? compose(environment, material, stand_in())
-                                     : compose(changed(environment, gain), material, stand_in());
-}
 
 const ToneMap& tone_map_of(const Recipe& recipe, const Scene& environment) {
   return recipe.outputs.tone_map ? *recipe.outputs.tone_map : environment.tone_map;

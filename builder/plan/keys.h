@@ -60,10 +60,6 @@ class KeyMaker {
   std::unique_ptr<State> state_;
 };
 
-/// The image's scene with one triangle in the model's place: all that its program depends on.
-/// Throws where a file cannot be read.
-Scene scene_without_model(const Recipe& recipe, Inputs& inputs, const ImageSpec& image);
-
 /// The tone map an image is developed with: the recipe's, else its environment's.
 const ToneMap& tone_map_of(const Recipe& recipe, const Scene& environment);
 const ToneMap& tone_map_of(const Recipe& recipe, const EnvironmentFacts& environment);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/plane_keys.h"
 
+#include "builder/plan/image_material.h"
 #include "builder/plan/image_scene.h"
 #include "builder/plan/keys.h"
 #include "tracer/base/canonical.h"

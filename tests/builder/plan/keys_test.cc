@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/keys.h"
 
+#include "builder/plan/image_material.h"
 #include "tracer/base/canonical.h"
 #include "tracer/base/files.h"
 #include "tracer/device/program_text.h"
