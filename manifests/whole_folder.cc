@@ -96,6 +96,10 @@ fs::path checked_place(const fs::path& to, const WholeFolderKind& kind) {
   return place;
 }
 
+void remove_leftovers(const fs::path& place, const WholeFolderKind& kind) {
+  remove_ended_process_folders(place.parent_path() / kind.work);
+}
+
 WholeFolder::WholeFolder(const fs::path& to, const WholeFolderKind& kind)
     : kind_(kind), to_(checked_place(to, kind)), replaces_(is_whole_folder(to_, kind)) {
   work_.path = make_process_folder(to_.parent_path() / kind_.work);
@@ -108,7 +112,7 @@ WholeFolder::WorkFolder::~WorkFolder() {
   std::error_code ignored;
   fs::remove_all(path, ignored);
   fs::remove(path.string() + ".lock", ignored);
-  fs::remove(path.parent_path(), ignored);  // where no other process is at work
+  remove_ended_process_folders(path.parent_path());
 }
 
 void WholeFolder::enter(const std::string& path, Hash128 hash) {

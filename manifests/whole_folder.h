@@ -38,6 +38,10 @@ const WholeFolderKind* whole_folder_kind(const std::filesystem::path& folder);
 /// replaced: no such folder, or one that holds what none of these put there.
 std::filesystem::path checked_place(const std::filesystem::path& to, const WholeFolderKind& kind);
 
+/// Removes what processes that were killed while they made one for that place left beside it; WholeFolder
+/// does so too. `place` as checked_place returns it.
+void remove_leftovers(const std::filesystem::path& place, const WholeFolderKind& kind);
+
 /// As it is under all links, where that can be told.
 std::filesystem::path real_place(const std::filesystem::path& path);
 /// Throws Error(usage) where `to` lies in what builds, exports and verify take for theirs of a dataset's

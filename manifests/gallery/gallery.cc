@@ -125,7 +125,10 @@ GalleryResult write_gallery(const GalleryRequest& request,
   if (is_whole_folder(place, k_gallery_folder))
     if (const auto made = standing_gallery_files(place, images)) {
       const Files files = texts_of(facts, lines, images, *made);
-      if (stands(place, files, *made)) return result_of(*made, files, facts, images.size());
+      if (stands(place, files, *made)) {
+        remove_leftovers(place, k_gallery_folder);
+        return result_of(*made, files, facts, images.size());
+      }
     }
 
   WholeFolder to(place, k_gallery_folder);

@@ -114,6 +114,12 @@ class GalleryTest(TinyCase):
         self.assertEqual(told["files"], len(before) - 1)
         self.assertEqual(self.to.stat().st_ino, folder, "nothing was to be written, and nothing was")
         self.assertEqual(self.contents(self.to), before)
+        # What a process killed after it put the gallery in its place left beside it goes all the same.
+        left = self.out / ".dsbuild-gallery/1-0"
+        (left / "gallery").mkdir(parents=True)
+        left.with_suffix(".lock").touch()
+        self.gallery()
+        self.assertFalse(left.parent.exists())
         shutil.rmtree(self.to)
         self.assertEqual(self.gallery()["made"], 3 * IMAGES)
         self.assertEqual(self.contents(self.to), before)

@@ -41,11 +41,12 @@ void remove_ended(const fs::path& parent) {
     remove_if_ended(lock);
 }
 
-/// Makes and locks a lock file that nobody else has; false where the name is taken. The descriptor
-/// stays open for the life of the process: that is the lock.
+/// Makes and locks a lock file that nobody else has; false where the name is taken or another process
+/// removed the folder, empty as it was. The descriptor stays open for the life of the process: that is
+/// the lock.
 bool take_lock(const fs::path& lock_file) {
   const int fd = ::open(lock_file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (fd < 0 && errno == EEXIST) return false;
+  if (fd < 0 && (errno == EEXIST || errno == ENOENT)) return false;
   if (fd < 0) fail(ErrorKind::io, "{}: cannot make: {}", lock_file.string(), std::strerror(errno));
   struct stat status {};
   // Between open and flock another process may have taken the file for an ended one's and removed
@@ -59,9 +60,9 @@ bool take_lock(const fs::path& lock_file) {
 }  // namespace
 
 fs::path make_process_folder(const fs::path& parent) {
-  make_folders(parent);
   remove_ended(parent);
   for (int n = 0; n < 1000; ++n) {
+    make_folders(parent);
     fs::path folder = parent / fmt::format("{}-{}", ::getpid(), n);
     if (!take_lock(folder.string() + ".lock")) continue;
     make_folders(folder);
@@ -69,6 +70,12 @@ fs::path make_process_folder(const fs::path& parent) {
   }
   fail(ErrorKind::io, "{}: cannot make a folder for this process: every name is taken",
        parent.string());
+}
+
+void remove_ended_process_folders(const fs::path& parent) {
+  remove_ended(parent);
+  std::error_code ignored;
+  fs::remove(parent, ignored);  // fails where another process is at work
 }
 
 }  // namespace ds

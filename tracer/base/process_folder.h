@@ -10,4 +10,8 @@ namespace ds {
 /// process does. Throws Error(io).
 std::filesystem::path make_process_folder(const std::filesystem::path& parent);
 
+/// Removes from `parent` what processes that have ended left there, and `parent` where nothing else is
+/// in it. What cannot be removed stays.
+void remove_ended_process_folders(const std::filesystem::path& parent);
+
 }  // namespace ds
