@@ -62,10 +62,11 @@ endfunction()
 # Builds the tests that trace no pictures: what sanitizers are run with (ci/deep).
 add_custom_target(tests_without_pictures)
 
-# ds_test(NAME SOURCES a_test.cc ... LIBS b ... [LABELS slow render]): one GoogleTest program, one CTest entry a test.
+# ds_test(NAME SOURCES a_test.cc ... LIBS b ... [LABELS slow render] [DEEP Suite.Test ...]): one GoogleTest program, one
+# CTest entry a test. Those of DEEP, too long for each change, have the label deep as well.
 # DS_SOURCE_DIR holds the project's root, so that tests find assets and ../shared/data.
 function(ds_test name)
-  cmake_parse_arguments(A "" "" "SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(A "" "" "SOURCES;LIBS;LABELS;DEEP" ${ARGN})
   add_executable(${name} ${A_SOURCES})
   target_link_libraries(${name} PRIVATE ${A_LIBS} ds_options GTest::gtest GTest::gmock GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE DS_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
@@ -77,5 +78,11 @@ function(ds_test name)
   endif()
   # Of a list gtest_discover_tests takes the first alone; ctest -L and -LE look for a part of a label.
   string(REPLACE ";" "_" labels "${A_LABELS}")
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${labels}")
+  if(A_DEEP)
+    string(REPLACE ";" ":" deep "${A_DEEP}")
+    gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 TEST_FILTER "${deep}" TEST_LIST ${name}_deep
+      PROPERTIES LABELS "${labels}_deep")
+    set(others TEST_FILTER "-${deep}")
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 ${others} PROPERTIES LABELS "${labels}")
 endfunction()

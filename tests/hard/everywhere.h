@@ -18,7 +18,8 @@ struct Way {
   std::string name() const;
 };
 
-/// All eight.
+/// Four, in which each two of arithmetic, lanes and program meet in every pairing; all eight where
+/// DSBUILD_TEST_WAYS is set.
 std::vector<Way> ways();
 /// Those with the program of all effects, which no scene makes the tests wait for: enough where a
 /// case is about a scene of its own for every material.
