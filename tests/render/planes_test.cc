@@ -12,6 +12,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <functional>
@@ -157,6 +158,43 @@ TEST(Planes, AreTheSameBitsAloneInAnyOrderAndAnyLanes) {
     EXPECT_EQ(bits(trace(scene, camera, {type}, 0, k_odd).at(name)), bits(together.at(name)))
         << name;
   }
+}
+
+std::vector<std::uint32_t> depth_bits(const Scene& scene, const Camera& camera, int lanes) {
+  const std::map<std::string, Plane> planes =
+      trace(scene, camera, {&plane_type("depth"), &plane_type("object_id")}, lanes);
+  std::vector<std::uint32_t> words;
+  for (const float value : planes.at("depth").values)
+    words.push_back(std::bit_cast<std::uint32_t>(value));
+  return words;
+}
+
+TEST(Planes, OfTilesWhoseRaysPartAreThoseOfSingleRays) {
+  const Scene scene = still_life();
+  Camera camera;
+  camera.position = {0.05, -2.5, -0.1};  // along y: x and z change their signs within tiles
+  camera.target = {0.05, 0, -0.1};
+  camera.fov_deg = 120;  // and the longest axis does
+  const std::vector<std::uint32_t> single = depth_bits(scene, camera, 1);
+  for (const int lanes : {4, 8, 16})
+    EXPECT_EQ(depth_bits(scene, camera, lanes), single) << lanes;
+}
+
+TEST(Planes, FromAHairOverAFloorAreThoseOfSingleRays) {
+  // There a triangle's test asks for the distance to its plane (bvh.cl), which packets leave to
+  // single rays.
+  const Scene scene = still_life();
+  Camera camera;
+  camera.position = {0.9, -1, -0.5 + 2e-7};
+  camera.target = {0.9, 1, -0.9};
+  const std::vector<std::uint32_t> single = depth_bits(scene, camera, 1);
+  const auto near = std::count_if(single.begin(), single.end(), [](std::uint32_t bits) {
+    const float depth = std::bit_cast<float>(bits);
+    return depth > 0 && depth < 5e-7f;
+  });
+  EXPECT_GT(near, 100);
+  for (const int lanes : {4, 8, 16})
+    EXPECT_EQ(depth_bits(scene, camera, lanes), single) << lanes;
 }
 
 TEST(Planes, AProgramHoldsThoseItIsAskedFor) {

@@ -192,8 +192,11 @@ void pack_triangles(const Scene& scene, std::span<const Corners> corners,
   }
   const Ties ties =
       find_ties(scene, corners, packed.bvh, cache != nullptr ? &cache->ties : nullptr);
-  std::copy(ties.low.begin(), ties.low.end(), packed.data.tie_low);
-  std::copy(ties.high.begin(), ties.high.end(), packed.data.tie_high);
+  packed.data.tie_places = static_cast<std::uint32_t>(ties.places.size());
+  for (std::size_t i = 0; i < ties.places.size(); ++i) {
+    std::copy(ties.places[i].low.begin(), ties.places[i].low.end(), packed.data.tie_low[i]);
+    std::copy(ties.places[i].high.begin(), ties.places[i].high.end(), packed.data.tie_high[i]);
+  }
   for (std::size_t i = 0; i < ties.flags.size(); ++i)
     if (ties.flags[i] != 0)
       packed.triangles.at(i * kernels::k_triangle_words + kernels::k_triangle_flags) |=

@@ -302,11 +302,8 @@ class Marks {
     const Box3 both = {
         {std::max(p.low.x, q.low.x), std::max(p.low.y, q.low.y), std::max(p.low.z, q.low.z)},
         {std::min(p.high.x, q.high.x), std::min(p.high.y, q.high.y), std::min(p.high.z, q.high.z)}};
-    const Box3 place = grown(both, 100 * error + 0.01 * greatest(both.high - both.low));
-    low_ = {std::min(low_.x, place.low.x), std::min(low_.y, place.low.y),
-            std::min(low_.z, place.low.z)};
-    high_ = {std::max(high_.x, place.high.x), std::max(high_.y, place.high.y),
-             std::max(high_.z, place.high.z)};
+    const Box3 place = grown(both, 1000 * error + 0.01 * greatest(both.high - both.low));
+    places_.add(place.low, place.high);
   }
 
   Ties take() {
@@ -317,10 +314,7 @@ class Marks {
       ties_.flags[id] |= std::min(exponent, 254u) << kernels::k_tie_error_shift;
       ties_.flags[id] |= mark.rank << kernels::k_tie_rank_shift;
     }
-    for (int axis = 0; axis < 3; ++axis) {
-      ties_.low[static_cast<std::size_t>(axis)] = static_cast<float>(low_[axis]);
-      ties_.high[static_cast<std::size_t>(axis)] = static_cast<float>(high_[axis]);
-    }
+    ties_.places = places_.take();
     return std::move(ties_);
   }
 
@@ -332,7 +326,7 @@ class Marks {
   std::span<const Corners> triangles_;
   std::vector<std::uint32_t> rank_;
   std::map<std::uint32_t, Mark> marks_;  ///< by triangle
-  Vec3d low_{1e30, 1e30, 1e30}, high_{-1e30, -1e30, -1e30};
+  TiePlaces places_;
   Ties ties_;
 };
 

@@ -3,6 +3,7 @@
 
 #include "tracer/accel/bvh.h"
 #include "tracer/base/kept.h"
+#include "tracer/device/tie_places.h"
 #include "tracer/scene/scene.h"
 
 #include <array>
@@ -18,8 +19,8 @@ namespace ds {
 struct Ties {
   /// By triangle: what k_triangle_flags holds of it (kernels/scene_data.h), 0 for one without.
   std::vector<std::uint32_t> flags;
-  /// Bounds of all places where triangles tie, with a margin; low above high where there are none.
-  std::array<float, 3> low, high;
+  /// Boxes, k_most_tie_places at most, that hold all places where triangles tie, with a margin.
+  std::vector<TiePlace> places;
 };
 
 /// Triangles of different objects that tie, whatever lies on what.

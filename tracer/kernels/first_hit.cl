@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The planes of a picture that ask no light: one ray a pixel, through its centre and the pinhole, the
-// rays of DS_LANES neighbours together. DS_PLANES(X) is the list of those asked for, X(name, numbers a
+// rays of a tile of DS_LANES pixels together. DS_PLANES(X) is the list of those asked for, X(name, numbers a
 // pixel of those before it) (device/plane_types.cc writes it).
 #include "tracer/kernels/hits.cl"
+#include "tracer/kernels/packet.cl"
 #include "tracer/kernels/plane.h"
 #include "tracer/kernels/tied_lanes.cl"
 #include "tracer/kernels/view_data.h"
@@ -30,6 +31,9 @@ DS_FN void nearest_lanes(const __global float8* nodes, const __global float8* le
   Batch b;
   Counts n = {0, 0, 0};
   n.at_node = add_rays(&b, 0, 0, nodes, rays);
+  const mask wanted = rays->wanted & traceable_lanes(rays);
+  if (n.at_node != 0 && keep_together(&b, wanted) && trace_packet(&b, wanted, nodes, leaves))
+    n.at_node = 0;
   while ((n.at_node | n.at_leaf | n.climbing) != 0) {
     n = step_nodes(&b, n, nodes);
     n = step_leaves(&b, n, leaves);
@@ -42,15 +46,19 @@ DS_FN void nearest_lanes(const __global float8* nodes, const __global float8* le
 
 /// What the wanted rays meet first. Those that the camera does not see are there still.
 DS_FN void camera_hits(const __global float8* nodes, const __global float8* leaves,
-                       DS_GLOBAL float* triangles, const LaneRays* rays, BatchHits* found) {
+                       DS_GLOBAL float* triangles, const SceneData* scene, const LaneRays* rays,
+                       BatchHits* found) {
   nearest_lanes(nodes, leaves, rays, found);
   const natural id = *(const natural*)found->id;
   const natural flags = triangle_word(triangles, id, k_triangle_flags);
   // As may_yield of ties.cl.
   const mask unseen = (flags & (uint)k_flag_camera_invisible) != 0u;
-  const mask asks =
+  mask asks =
       rays->wanted & (id != k_none) &
       (((flags & (uint)k_flag_covered) != 0u) | (unseen & ((flags & (uint)k_flags_tied) != 0u)));
+  if (!any_lane(asks)) return;
+  asks =
+      asks & may_tie_at(scene, add_scaled(rays->origin, rays->direction, *(const real*)found->t));
   if (any_lane(asks)) top_hits(nodes, leaves, triangles, rays, asks, (mask)(-1), found);
 }
 
@@ -59,11 +67,11 @@ DS_FN real along(const float* start, const float* right, const float* up, int ax
   return fma(sx, (real)(right[axis]), fma(sy, (real)(up[axis]), (real)(start[axis])));
 }
 
-/// The rays through pixels i. Their directions' part along the viewing axis is 1, so a hit's distance
-/// in lengths of it is the planar depth.
-DS_FN LaneRays pixel_rays(const ViewData* view, natural i, mask wanted) {
-  const real sx = 2.0f * (to_real(i % view->width) + 0.5f) / (float)view->width - 1.0f;
-  const real sy = 1.0f - 2.0f * (to_real(i / view->width) + 0.5f) / (float)view->height;
+/// The rays through pixels (x, y). Their directions' part along the viewing axis is 1, so a hit's
+/// distance in lengths of it is the planar depth.
+DS_FN LaneRays pixel_rays(const ViewData* view, natural x, natural y) {
+  const real sx = 2.0f * (to_real(x) + 0.5f) / (float)view->width - 1.0f;
+  const real sy = 1.0f - 2.0f * (to_real(y) + 0.5f) / (float)view->height;
   LaneRays rays;
   rays.origin = vec(along(view->start, view->start_right, view->start_up, 0, sx, sy),
                     along(view->start, view->start_right, view->start_up, 1, sx, sy),
@@ -72,18 +80,21 @@ DS_FN LaneRays pixel_rays(const ViewData* view, natural i, mask wanted) {
                        along(view->forward, view->right, view->up, 1, sx, sy),
                        along(view->forward, view->right, view->up, 2, sx, sy));
   rays.t_max = (real)(1e30f);
-  rays.wanted = wanted;
+  rays.wanted = (x < view->width) & (y < view->height);
   return rays;
 }
 
-/// Number k of `width` of the pixels from `first` on, up to `end`.
-DS_FN void store_number(__global float* plane, uint first, uint end, uint width, uint k,
-                        real number) {
+/// Number k of `width` of the tile's pixels, whose first is (x, y).
+DS_FN void store_number(__global float* plane, const ViewData* view, uint x, uint y, uint width,
+                        uint k, real number) {
   float lanes[DS_LANES] __attribute__((aligned(64)));
   *(real*)lanes = number;
-  const uint count = min(end - first, (uint)DS_LANES);
-  for (uint lane = 0; lane < count; ++lane)
-    plane[(first + lane) * width + k] = lanes[lane];
+  const uint across = tile_width(DS_LANES);
+  const uint rows = min(view->height - y, tile_height(DS_LANES));
+  const uint columns = min(view->width - x, across);
+  for (uint row = 0; row < rows; ++row)
+    for (uint column = 0; column < columns; ++column)
+      plane[((y + row) * view->width + x + column) * width + k] = lanes[row * across + column];
 }
 
 /// planes: all numbers of the first plane, pixel by pixel, then those of the next. material_ids: by
@@ -91,21 +102,25 @@ DS_FN void store_number(__global float* plane, uint first, uint end, uint width,
 __kernel void trace_planes(
     const __global float8* restrict nodes, const __global float8* restrict leaves,
     const __global float* restrict triangles, const __global float* restrict material_ids,
-    const __global ViewData* restrict view_data, __global float* restrict planes
+    const __global ViewData* restrict view_data, const __global SceneData* restrict scene_data,
+    __global float* restrict planes
 #ifdef DS_HOOK_ALBEDO
     ,
     const __global float* restrict materials, const __global float* restrict programs,
-    const __global float* restrict tables, const __global SceneData* restrict scene_data
+    const __global float* restrict tables
 #endif
 ) {
   const ViewData view = *view_data;
-  const uint first = (uint)get_global_id(0) * (uint)DS_LANES;
+  const SceneData scene = *scene_data;
+  const uint across = tile_width(DS_LANES);
+  const uint tiles = (view.width + across - 1u) / across;
+  const uint x = (uint)get_global_id(0) % tiles * across;
+  const uint y = (uint)get_global_id(0) / tiles * tile_height(DS_LANES);
+  if (y >= view.height) return;
   const uint pixels = view.width * view.height;
-  if (first >= pixels) return;
-  const natural i = DS_LANE_NUMBERS + first;
-  LaneRays rays = pixel_rays(&view, i, i < pixels);
+  LaneRays rays = pixel_rays(&view, DS_LANE_NUMBERS % across + x, DS_LANE_NUMBERS / across + y);
   BatchHits found;
-  camera_hits(nodes, leaves, triangles, &rays, &found);
+  camera_hits(nodes, leaves, triangles, &scene, &rays, &found);
   real t = *(const real*)found.t;
   natural id = *(const natural*)found.id;
   real passed = (real)(0.0f);
@@ -117,7 +132,7 @@ __kernel void trace_planes(
     const real step = t + 1e-6f * (passed + t);
     passed = choose(rays.wanted, passed + step, passed);
     rays.origin = choose(rays.wanted, add_scaled(rays.origin, rays.direction, step), rays.origin);
-    camera_hits(nodes, leaves, triangles, &rays, &found);
+    camera_hits(nodes, leaves, triangles, &scene, &rays, &found);
     t = choose(rays.wanted, *(const real*)found.t, t);
     id = choose_natural(rays.wanted, *(const natural*)found.id, id);
   }
@@ -145,17 +160,17 @@ __kernel void trace_planes(
   tables_of.materials = materials;
   tables_of.programs = programs;
   tables_of.tables = tables;
-  tables_of.material_words = scene_data->material_words;
+  tables_of.material_words = scene.material_words;
   h.albedo =
       surface_albedo(tables_of, triangle_word(triangles, id, k_triangle_material), met, &h.surface);
 #endif
-#define DS_PLANE(name, before)                                                        \
-  {                                                                                   \
-    real out[name##_width];                                                           \
-    name##_at(&h, out);                                                               \
-    for (uint k = 0; k < (uint)name##_width; ++k)                                     \
-      store_number(planes + before##u * pixels, first, pixels, (uint)name##_width, k, \
-                   choose(met, out[k], zero));                                        \
+#define DS_PLANE(name, before)                                                      \
+  {                                                                                 \
+    real out[name##_width];                                                         \
+    name##_at(&h, out);                                                             \
+    for (uint k = 0; k < (uint)name##_width; ++k)                                   \
+      store_number(planes + before##u * pixels, &view, x, y, (uint)name##_width, k, \
+                   choose(met, out[k], zero));                                      \
   }
   DS_PLANES(DS_PLANE)
 }

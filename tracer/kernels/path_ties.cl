@@ -23,9 +23,7 @@ DS_FN bool settle_ties(const SceneTables* t, const SceneData* scene, const Paths
 #endif
   if (!any_lane(wanted)) return false;
   const real3 at = add_scaled(rays->origin, rays->direction, *(const real*)found->t);
-  wanted = wanted & (at.x >= scene->tie_low[0]) & (at.x <= scene->tie_high[0]) &
-           (at.y >= scene->tie_low[1]) & (at.y <= scene->tie_high[1]) &
-           (at.z >= scene->tie_low[2]) & (at.z <= scene->tie_high[2]);
+  wanted = wanted & may_tie_at(scene, at);
   return any_lane(wanted) &&
          top_hits(t->nodes, t->leaves, t->triangles, rays, wanted, camera, found);
 }

@@ -6,6 +6,9 @@
 
 #include "tracer/kernels/language.h"
 
+/// Of SceneData::tie_low and tie_high.
+#define k_most_tie_places 8
+
 /// Constants of a scene. Offsets count words in the buffer named.
 typedef struct {
   uint light_count;
@@ -15,12 +18,14 @@ typedef struct {
   /// Candidates for a vertex' shadow ray: light_count, one of each light, whose selection
   /// probabilities are then 1 or 0; or 1, of a light chosen by these.
   uint light_rounds;
-  uint material_words;            ///< words a row of materials takes
-  float tie_low[3], tie_high[3];  ///< where surfaces may tie (ties.cl); low above high: nowhere
+  uint material_words;  ///< words a row of materials takes
+  /// Boxes where surfaces may tie (ties.cl); nowhere else.
+  uint tie_places;
+  float tie_low[k_most_tie_places][3], tie_high[k_most_tie_places][3];
 } SceneData;
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(SceneData) == 11 * 4, "no padding");
+static_assert(sizeof(SceneData) == 54 * 4, "no padding");
 #endif
 
 enum {

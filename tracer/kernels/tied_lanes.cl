@@ -19,6 +19,18 @@ DS_FN LaneVectors lane_vectors(real3 v) {
   return a;
 }
 
+/// Whether surfaces may tie with others where the lanes' points are.
+DS_FN mask may_tie_at(const SceneData* scene, real3 at) {
+  mask may = (mask)(0);
+  for (uint i = 0; i < scene->tie_places; ++i) {
+    const float* low = scene->tie_low[i];
+    const float* high = scene->tie_high[i];
+    may = may | ((at.x >= low[0]) & (at.x <= high[0]) & (at.y >= low[1]) & (at.y <= high[1]) &
+                 (at.z >= low[2]) & (at.z <= high[2]));
+  }
+  return may;
+}
+
 /// Replaces the nearest hits of `asks` by what is met: top_hit. Tells whether any changed.
 DS_OUT_OF_LINE bool top_hits(const __global float8* nodes, const __global float8* leaves,
                              DS_GLOBAL float* triangles, const LaneRays* rays, mask asks,

@@ -32,3 +32,12 @@ typedef struct {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(ViewData) == 44 * 4, "no padding");
 #endif
+
+/// A work-item of planes makes a tile of as many pixels as it has lanes (1, 4, 8 or 16), as square as can
+/// be.
+DS_FN uint tile_width(uint lanes) {
+  return lanes >= 8u ? 4u : lanes >= 4u ? 2u : 1u;
+}
+DS_FN uint tile_height(uint lanes) {
+  return lanes / tile_width(lanes);
+}

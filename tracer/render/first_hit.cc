@@ -40,6 +40,13 @@ bool read_materials(const std::vector<const PlaneType*>& types) {
                      [](const PlaneType* type) { return reads_materials(*type); });
 }
 
+/// Work-items of a picture's planes.
+std::size_t tile_count(const kernels::ViewData& view, int lanes) {
+  const auto width = kernels::tile_width(static_cast<kernels::uint>(lanes));
+  const auto height = kernels::tile_height(static_cast<kernels::uint>(lanes));
+  return std::size_t{(view.width + width - 1) / width} * ((view.height + height - 1) / height);
+}
+
 std::vector<std::uint32_t> material_ids(const Scene& scene) {
   std::vector<std::uint32_t> ids;
   for (const Material& material : scene.materials)
@@ -78,14 +85,13 @@ std::vector<Plane> Tracer::State::launch_planes(const DeviceScene& of, const Sce
   const Buffer ids = device.upload(material_ids(seen));
   Kernel& kernel = plane_kernel(types);
   unsigned argument = 0;
-  for (const Buffer* b : {&of.nodes, &of.leaves, &of.triangles, &ids, &view_buffer, &planes})
+  for (const Buffer* b :
+       {&of.nodes, &of.leaves, &of.triangles, &ids, &view_buffer, &of.data, &planes})
     kernel.set(argument++, *b);
   if (read_materials(types))
-    for (const Buffer* b : {&of.materials, &of.texture_code, &of.tables, &of.data})
+    for (const Buffer* b : {&of.materials, &of.texture_code, &of.tables})
       kernel.set(argument++, *b);
-  const auto pixels_an_item = static_cast<std::size_t>(plane_lanes());
-  device.run(kernel, 0, round_up((pixels + pixels_an_item - 1) / pixels_an_item, local_size),
-             local_size);
+  device.run(kernel, 0, round_up(tile_count(view, plane_lanes()), local_size), local_size);
   if (options.count_rays) ray_counts.geometry += pixels;
   std::vector<float> all(pixels * static_cast<std::size_t>(numbers));
   device.read(planes, std::as_writable_bytes(std::span(all)));

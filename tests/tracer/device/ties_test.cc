@@ -7,6 +7,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
+#include <utility>
+#include <vector>
+
 namespace ds {
 namespace {
 
@@ -47,10 +52,12 @@ Scene scene_of(const std::vector<Mesh>& meshes) {
 TEST(Ties, AreOfFacesInOnePlaneThatOverlap) {
   const Ties ties = ties_of(scene_of({level_square(0, 0.3f, 1), level_square(0.5f, 0.3f, 0.25f)}));
   EXPECT_EQ(kinds(ties), (std::vector<std::uint32_t>{k_flag_covered, k_flag_covers}));
-  EXPECT_LT(ties.low[0], 0.25f);
-  EXPECT_GT(ties.low[0], 0.2f);
-  EXPECT_LE(ties.low[2], 0.3f);
-  EXPECT_GE(ties.high[2], 0.3f);
+  ASSERT_EQ(ties.places.size(), 1u);
+  const TiePlace& place = ties.places[0];
+  EXPECT_LT(place.low[0], 0.25f);
+  EXPECT_GT(place.low[0], 0.2f);
+  EXPECT_LE(place.low[2], 0.3f);
+  EXPECT_GE(place.high[2], 0.3f);
 }
 
 TEST(Ties, AreNotOfNeighboursNorOfFacesThatRaysCanTellApart) {
@@ -60,8 +67,41 @@ TEST(Ties, AreNotOfNeighboursNorOfFacesThatRaysCanTellApart) {
                             pictures::quad({0.5f, 0, 0.3f}, {0.25f, 0, 0}, {0, 0, 0.25f})}) {
     const Ties ties = ties_of(scene_of({level_square(0, 0.3f, 1), other}));
     EXPECT_EQ(kinds(ties), (std::vector<std::uint32_t>{0, 0}));
-    EXPECT_GT(ties.low[0], ties.high[0]);
+    EXPECT_TRUE(ties.places.empty());
   }
+}
+
+TEST(TiePlaces, HoldAllThatWasAddedInFewBoxes) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> u(0, 1);
+  for (const double spread : {0.5, 5.0, 50.0}) {
+    TiePlaces places;
+    std::vector<std::pair<Vec3d, Vec3d>> added;
+    for (int i = 0; i < 200; ++i) {
+      const Vec3d low{spread * u(random), spread * u(random), spread * u(random)};
+      added.emplace_back(low, low + Vec3d{u(random), u(random), 0});
+      places.add(added.back().first, added.back().second);
+    }
+    const std::vector<TiePlace> boxes = places.take();
+    EXPECT_LE(boxes.size(), std::size_t{k_most_tie_places});
+    for (const auto& [low, high] : added)
+      EXPECT_TRUE(
+          std::any_of(boxes.begin(), boxes.end(), [&, l = low, h = high](const TiePlace& b) {
+            return double{b.low[0]} <= l.x && double{b.low[1]} <= l.y && double{b.low[2]} <= l.z &&
+                   double{b.high[0]} >= h.x && double{b.high[1]} >= h.y && double{b.high[2]} >= h.z;
+          }));
+  }
+}
+
+TEST(TiePlaces, StayApartWhereThereAreFew) {
+  TiePlaces places;
+  for (int i = 0; i < k_most_tie_places; ++i)
+    places.add({3.0 * i, 0, 0}, {3.0 * i + 1, 1, 0});
+  EXPECT_EQ(places.take().size(), std::size_t{k_most_tie_places});
+  places.add({0.5, 0.5, 0}, {2, 2, 0});  // meets the first
+  const std::vector<TiePlace> boxes = places.take();
+  EXPECT_EQ(boxes.size(), std::size_t{k_most_tie_places});
+  EXPECT_EQ(boxes.back().high[0], 2);
 }
 
 /// Each of them nearly fills its leaf's box, and both come near others' boxes.
@@ -75,8 +115,7 @@ TEST(Ties, DoNotDependOnTheTree) {
   for (const int width : {2, 3, 5}) {
     const Ties other = ties_of(scene, width);
     EXPECT_EQ(other.flags, usual.flags) << width;
-    EXPECT_EQ(other.low, usual.low) << width;
-    EXPECT_EQ(other.high, usual.high) << width;
+    EXPECT_EQ(other.places, usual.places) << width;
   }
 }
 
