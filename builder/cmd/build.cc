@@ -196,15 +196,17 @@ int run_build(const Arguments& arguments) {
     return make_tracer_renderer(inputs, dataset.recipe, options);
   };
   BuildResult result;
+  std::set<std::string> told_before;
   {
     // Only now: planning may be ended anywhere, and needs nobody to wait for it.
     const std::atomic<bool>& stop = stop_on_signal();
     Progress progress(arguments.keep_going);
     WatchedObserver watched(progress, arguments.stall_seconds);
     result = execute(dataset, plan, inputs, build_options, disk, factory, watched, stop);
+    told_before = progress.told();
   }
   for (const auto& [what, why] : result.failures)
-    say(Stream::people, "dsbuild: error: {}: {}\n", what, why);
+    if (!told_before.contains(what)) say(Stream::people, "dsbuild: error: {}: {}\n", what, why);
   if (result.stopped)
     say(Stream::people, "dsbuild: stopped; what is finished is recorded, build again to go on\n");
   if (!arguments.database_folder.empty() && arguments.shard.empty() && !result.disk_failed)

@@ -51,15 +51,19 @@ std::string Progress::line(const std::string& image, std::uint64_t samples_now) 
   const double done = samples_ > 0 ? static_cast<double>(samples_done_ + samples_now)
                                    : static_cast<double>(images_done_);
   const double share = total > 0 ? done / total : 1;
-  const std::string before = fmt::format("[{}/{}] {:3.0f}% ", images_done_, images_, 100 * share);
-  std::string behind;
-  if (traced > 0 && seconds > 0)
-    behind += fmt::format("  {:.2f} Msamples/s", traced / seconds * 1e-6);
-  if (share > 0 && share < 1) behind += "  ETA " + format_duration(seconds * (1 - share) / share);
+  // Rounded down: 100 % is all of it.
+  const std::string before =
+      fmt::format("[{}/{}] {:3.0f}% ", images_done_, images_, std::floor(100 * share));
+  std::string rate, left;
+  if (traced > 0 && seconds > 0) rate = fmt::format("  {:.2f} Msamples/s", traced / seconds * 1e-6);
+  if (share > 0 && share < 1) left = "  ETA " + format_duration(seconds * (1 - share) / share);
   const std::optional<int> columns = line_columns();
-  if (!columns) return before + image + behind;
-  // What is too long for the terminal is the name; numbers are what people watch.
-  const int for_name = *columns - columns_of(before) - columns_of(behind);
+  if (!columns) return before + image + rate + left;
+  // What is too long for the terminal is the name, then the rate: when it ends is what people watch.
+  const auto room = [&] { return *columns - columns_of(before) - columns_of(rate + left); };
+  if (room() < k_least_name_columns) rate.clear();
+  const std::string behind = rate + left;
+  const int for_name = room();
   return cut_to_columns(
       before + shorten_to_columns(image, std::max(for_name, k_least_name_columns)) + behind,
       *columns);
@@ -92,7 +96,9 @@ void Progress::image_failed(const PlannedImage& image, const std::string& why) {
   if (image.error) return;
   ++images_done_;
   samples_done_ += image.traces_paths() ? image.samples() : 0;
-  if (!tell_failures_) return;
+  // Others of the same cause are counted at the end.
+  if (!tell_failures_ || !causes_.insert(why).second) return;
+  told_.insert(image.spec.id);
   say(Stream::people, "dsbuild: error: {}: {}\n", image.spec.id, why);
 }
 

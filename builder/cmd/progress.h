@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <set>
 #include <string>
 
 namespace ds {
@@ -13,7 +14,8 @@ namespace ds {
 /// line an image elsewhere.
 class Progress : public BuildObserver {
  public:
-  /// `tell_failures`: as they come; else they are left to the end, which is then near.
+  /// `tell_failures`: the first of each cause as it comes; else they are left to the end, which is then
+  /// near.
   explicit Progress(bool tell_failures);
   ~Progress() override;
 
@@ -23,12 +25,16 @@ class Progress : public BuildObserver {
   void image_done(const PlannedImage& image, const ImageWork& work) override;
   void image_failed(const PlannedImage& image, const std::string& why) override;
 
+  /// Ids of the images whose failure was told as it came.
+  const std::set<std::string>& told() const { return told_; }
+
  private:
   std::string line(const std::string& image, std::uint64_t samples_now) const;
   void show(const std::string& image, std::uint64_t samples_now);
 
   using Clock = std::chrono::steady_clock;
   bool tell_failures_;
+  std::set<std::string> causes_, told_;
   bool moves_;
   std::uint64_t images_ = 0, images_done_ = 0;
   std::uint64_t samples_ = 0;         ///< planned

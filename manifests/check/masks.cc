@@ -48,7 +48,7 @@ void check_masks(const CheckInput& input, CheckReport& report) {
   report.add(CheckLevel::warning,
              fmt::format("images show their model on under {:g} % of the picture", 100 * least),
              where([&](double share) { return share > 0 && share < least; }), masks.size(),
-             "camera.distance_m = \"fit\"");
+             "camera.distance_m = \"fit\"; for thin models a larger engine.width");
   report.add(CheckLevel::warning,
              fmt::format("images show nearly nothing but their model, on over {:g} %", 100 * most),
              where([&](double share) { return share > most; }), masks.size(),

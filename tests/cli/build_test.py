@@ -116,6 +116,22 @@ class BuildTest(TinyCase):
         self.assert_counts(self.build("-k", code=1), built=IMAGES, failed=4)
         self.assert_counts(self.build("-k", code=1), built=0, reused=IMAGES, failed=4)
 
+    def test_what_fails_on_the_way_is_told_once(self):
+        environment = self.tiny / "environments/plain"
+        (environment / "cut.hdr").write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n")
+        with (environment / "environment.scn").open("a") as file:
+            file.write('scene.lights.cut.type = infinite\nscene.lights.cut.file = cut.hdr\n')
+        run = self.run_it("build", self.recipe, "-o", self.out, "--json", "-k")
+        self.assertEqual(run.code, 1, run)
+        self.assert_counts(run.json, failed=4)
+        # The first as it comes; at the end how many there are. One alone is not told again.
+        self.assertEqual(run.err.count("dsbuild: error: "), 2, run)
+        self.assertEqual(run.err.count("4 images, "), 1, run)
+        (self.tiny / "models/tetra.ply").unlink()
+        run = self.run_it("build", self.recipe, "-o", self.folder / "one", "--json", "-k", "--set", "camera.views=[1]")
+        self.assert_counts(run.json, failed=1)
+        self.assertEqual(run.err.count("dsbuild: error: "), 1, run)
+
     def test_no_folder_is_named_that_nothing_was_made_in(self):
         for environment in (self.tiny / "environments").iterdir():
             (environment / "environment.scn").write_text("nothing that can be read\n")

@@ -33,6 +33,7 @@ class View {
     return at < text_.size() ? static_cast<unsigned char>(text_[at]) : 0;
   }
   std::uint32_t big16(std::size_t at) const { return byte(at) << 8U | byte(at + 1); }
+  std::uint32_t little16(std::size_t at) const { return byte(at) | byte(at + 1) << 8U; }
   std::uint32_t little24(std::size_t at) const {
     return byte(at) | byte(at + 1) << 8U | byte(at + 2) << 16U;
   }
@@ -187,6 +188,7 @@ std::string check_image_claims(std::span<const std::byte> bytes, const std::stri
   if (format == "tiff") check_tiff(bytes, name);
   if (format == "png") check(png_size(view));
   if (format == "webp") check(webp_size(view));
+  if (format == "gif") check({view.little16(6), view.little16(8)});  // its canvas
   if (format == "jpeg") {
     const std::optional<JpegHead> head = jpeg_head(view);
     // Thumbnails stand before the scan and have an end of their own.

@@ -246,6 +246,13 @@ TEST_F(LoadImage, WideFilesOfFewBytesTakeLittleMemory) {
       testing::ExitedWithCode(0), "");
 }
 
+// Its reader takes a canvas of what the head promises before it reads on.
+TEST_F(LoadImage, AGifOfFewBytesIsNotBelievedALargeCanvas) {
+  const std::string head("GIF89a\x60\xea\x60\xea\x80\0\0\0\0\0\xff\xff\xff", 19);
+  const std::string frame(",\0\0\0\0\x60\xea\x60\xea\0\x02\x02\x44\x01\0;", 16);
+  EXPECT_THAT(error_of(image_of(head + frame, "a.gif")), HasSubstr("promises 60000 x 60000"));
+}
+
 TEST_F(LoadImage, AFileThatChangedIsAnError) {
   Image image = image_of(png_file(1, 1, 8, 0, {5}));
   image.content = Hash128{1, 2};
