@@ -20,7 +20,8 @@ struct Arguments {
   std::string image;   ///< id of an image, or the path of one of its files
   std::vector<std::string> overrides;
   std::string output_folder, store_folder, device;
-  std::string database_folder;
+  std::string database_folder, local_folder;
+  bool no_files = false;
   std::string shard;  ///< empty: all images
   std::uint64_t rerender = 0, seed = 0;
   double stall_seconds = 900;
@@ -56,7 +57,8 @@ struct Arguments {
             store_folder,
             adopt,
             database_folder,
-            !database_folder.empty() && !shard.empty()};
+            no_files || (!database_folder.empty() && !shard.empty()),
+            local_folder};
   }
 };
 
@@ -76,6 +78,8 @@ enum class Option {
   init_file,
   store_task,
   store_limits,  ///< what gc takes away
+  local_store,   ///< where a machine keeps what it makes until that is in the store
+  slurm_local,   ///< the same, of each node
   overrides,
   output_folder,
   store_folder,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/concerns_text.h"
+#include "builder/cmd/gathering.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/progress.h"
+#include "builder/cmd/slurm_state.h"
 #include "builder/cmd/stop_signal.h"
 #include "builder/cmd/supervisor.h"
 #include "builder/cmd/verbs.h"
@@ -9,6 +11,7 @@
 #include "builder/make/sole_plan.h"
 #include "builder/plan/lacking.h"
 #include "builder/store/store_database.h"
+#include "tracer/base/error.h"
 #include "tracer/base/log.h"
 #include "tracer/base/streams.h"
 
@@ -157,10 +160,40 @@ int dry_run(const Arguments& arguments, const Recipe& recipe, const Plan& plan,
   return counts.failed > 0 ? 1 : 0;
 }
 
+/// What goes together, and what does not.
+void check_options(const Arguments& arguments) {
+  if (!arguments.local_folder.empty() && arguments.database_folder.empty())
+    fail(
+        ErrorKind::usage,
+        "build --local: wants --database DIR too, as every build of a store where several machines "
+        "write");
+  if (arguments.no_files && arguments.copy)
+    fail(ErrorKind::usage,
+         "build: --no-files places no file and --copy says how; give one of them");
+}
+
+/// What is moved into a store must not lie in it.
+void check_local(const Store& store) {
+  std::error_code error;
+  if (store.local() == store.folder() ||
+      std::filesystem::equivalent(store.local(), store.folder(), error))
+    fail(ErrorKind::usage, "build --local: wanted another folder than the store's, got {}",
+         store.local().string());
+}
+
+/// A store that jobs of Slurm filled until they ended is whole now.
+void remove_mark(const Dataset& dataset) {
+  const std::optional<SlurmMark> mark = find_slurm_mark(*dataset.store);
+  std::error_code ignored;
+  if (mark && mark->folder == dataset.folder) std::filesystem::remove(mark->file, ignored);
+}
+
 }  // namespace
 
 int run_build(const Arguments& arguments) {
-  const BuildOptions build_options{arguments.keep_going, arguments.force, arguments.copy,
+  check_options(arguments);
+  const Wanted wanted = arguments.no_files ? Wanted::store : Wanted::files;
+  const BuildOptions build_options{arguments.keep_going, arguments.force, arguments.copy, wanted,
                                    earlier_processes()};
   // What the command is for lies in files: a reader of its text who goes away does not end it.
   if (!arguments.dry_run) std::signal(SIGPIPE, SIG_IGN);
@@ -169,17 +202,22 @@ int run_build(const Arguments& arguments) {
   if (arguments.dry_run) {
     Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
     Inputs inputs(*dataset.database, stamps_of(arguments));
-    const Plan plan = make_plan(dataset, inputs, arguments.force, shard);
+    const Plan plan = make_plan(dataset, inputs, arguments.force, shard, wanted);
     warn_of_mended(plan);
     return dry_run(arguments, dataset.recipe, plan, build_options);
   }
-  Dataset dataset = open_dataset(arguments.request(), Access::build, disk);
+  DatasetRequest request = arguments.request();
+  request.check_filled = [](const SlurmMark& mark) {
+    refuse_filled_store(mark, "a build without --database");
+  };
+  Dataset dataset = open_dataset(request, Access::build, disk);
+  check_local(*dataset.store);
   const auto waits_for = [&](const std::string& who) {
     say(Stream::people, "dsbuild: {}: waiting for another build that makes something else: {}\n",
         dataset.folder.string(), who);
   };
   const SolePlan sole =
-      make_sole_plan(dataset, stamps_of(arguments), arguments.force, shard, waits_for);
+      make_sole_plan(dataset, stamps_of(arguments), arguments.force, shard, wanted, waits_for);
   Inputs& inputs = *sole.inputs;
   const Plan& plan = sole.plan;
   warn_of_mended(plan);
@@ -197,20 +235,23 @@ int run_build(const Arguments& arguments) {
   };
   BuildResult result;
   std::set<std::string> told_before;
-  {
+  const BroughtHome brought = work_and_bring_home(*dataset.store, disk, [&] {
     // Only now: planning may be ended anywhere, and needs nobody to wait for it.
     const std::atomic<bool>& stop = stop_on_signal();
     Progress progress(arguments.keep_going);
     WatchedObserver watched(progress, arguments.stall_seconds);
     result = execute(dataset, plan, inputs, build_options, disk, factory, watched, stop);
     told_before = progress.told();
-  }
+  });
+  if (!brought.failed.empty()) result.failures.emplace_back("the store", brought.failed);
   for (const auto& [what, why] : result.failures)
     if (!told_before.contains(what)) say(Stream::people, "dsbuild: error: {}: {}\n", what, why);
   if (result.stopped)
     say(Stream::people, "dsbuild: stopped; what is finished is recorded, build again to go on\n");
-  if (!arguments.database_folder.empty() && arguments.shard.empty() && !result.disk_failed)
+  const bool is_whole = arguments.shard.empty() && !arguments.no_files;
+  if (!arguments.database_folder.empty() && is_whole && !result.disk_failed)
     put_database(*dataset.store, *dataset.database, arguments.database_folder, disk);
+  if (arguments.database_folder.empty() && is_whole && result.ok()) remove_mark(dataset);
   const std::size_t concerns = tell_concerns(result.concerns, dataset.recipe, arguments.strict);
   if (const std::uint64_t others = result.failed + result.not_reached; others > 0)
     say(Stream::people, "not looked at: {} of {} images, which are not made\n", others,
@@ -219,6 +260,7 @@ int run_build(const Arguments& arguments) {
   told["lacking"] = to_json(all_lacking);
   told["edited_files"] = plan.edited.size();
   told["strict_errors"] = concerns;
+  if (brought.result) told["gathered"] = to_json(*brought.result);
   if (arguments.json)
     print_json(told);
   else

@@ -2,6 +2,7 @@
 #include "builder/upkeep/clean.h"
 
 #include "builder/cmd/plan_text.h"
+#include "builder/cmd/slurm_state.h"
 #include "builder/cmd/verbs.h"
 #include "tracer/base/error.h"
 #include "tracer/base/log.h"
@@ -16,7 +17,9 @@ int run_clean(const Arguments& arguments) {
   if (const std::filesystem::path folder = dataset_folder(arguments.request());
       !std::filesystem::exists(folder / ".dsbuild", error))
     fail(ErrorKind::usage, "{}: nothing was built there", folder.string());
-  Dataset dataset = open_dataset(arguments.request(), access, disk);
+  DatasetRequest request = arguments.request();
+  request.check_filled = [](const SlurmMark& mark) { refuse_filled_store(mark, "clean"); };
+  Dataset dataset = open_dataset(request, access, disk);
   const CleanResult result = clean_dataset(dataset, disk, arguments.dry_run);
   nlohmann::json edited = nlohmann::json::array();
   for (const std::filesystem::path& file : result.edited)

@@ -132,10 +132,13 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
     case Option::store_task:
       verb.add_option("WHAT", to.store_task,
                       "stats: what is in it, and for which datasets; gc: remove what none of them "
-                      "names; verify: read every file")
+                      "names; verify: read every file; gather: take what it has into another")
           ->required();
       verb.add_option("STORE", to.target, "its folder, or a dataset that it belongs to")
           ->required();
+      verb.add_option("TO", to.other,
+                      "gather: the store that takes, or a dataset that it belongs to, or a folder "
+                      "that is not there yet");
       return;
     case Option::store_limits:
       verb.add_option("--older", to.older,
@@ -172,6 +175,24 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
               "keep the store's database and locks in this folder of the machine's own, for a "
               "store where several machines write; a build of all images leaves a whole copy in "
               "the store [the store]")
+          ->type_name("DIR");
+      return;
+    case Option::local_store:
+      verb.add_option(
+              "--local", to.local_folder,
+              "keep what is made in this folder of the machine's own disk, and put it into the "
+              "store at the end, however the build ends; wants --database [the store]")
+          ->type_name("DIR");
+      verb.add_flag("--no-files", to.no_files,
+                    "fill the store only: place no file and write no manifest");
+      return;
+    case Option::slurm_local:
+      verb.add_option(
+              "--local", to.local_folder,
+              "shares keep what they make on their node's own disk, in a folder in this one, and "
+              "put "
+              "it into the store at their end; may begin with a job's variable ('$TMPDIR') [the "
+              "store]")
           ->type_name("DIR");
       return;
     case Option::slurm_jobs:

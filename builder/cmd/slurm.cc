@@ -9,6 +9,7 @@
 #include "builder/store/store_database.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
+#include "tracer/base/hash.h"
 #include "tracer/base/log.h"
 #include "tracer/base/streams.h"
 
@@ -17,6 +18,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <pwd.h>
+#include <regex>
 #include <sstream>
 #include <system_error>
 #include <unistd.h>
@@ -32,6 +34,17 @@ constexpr int k_shards_a_node = 4;  ///< so that no node waits long for the last
 std::string user_name() {
   const passwd* user = ::getpwuid(::getuid());
   return user != nullptr ? user->pw_name : std::to_string(::getuid());
+}
+
+/// On one node several users, and jobs of several stores, may keep what they make in one folder.
+std::string local_store_of(const std::string& folder, const fs::path& store) {
+  static const std::regex k_place(R"(/.*|\$[A-Za-z_][A-Za-z0-9_]*(/.*)?)");
+  if (!std::regex_match(folder, k_place))
+    fail(ErrorKind::usage,
+         "slurm --local: wanted a folder that every node has, /scratch or '$TMPDIR/x', got {}",
+         folder);
+  return fmt::format("{}/dsbuild-{}-{}", folder, user_name(),
+                     hash_text(store.string()).hex().substr(0, 16));
 }
 
 SlurmJob job_of(const Arguments& arguments, const Dataset& dataset) {
@@ -55,6 +68,8 @@ SlurmJob job_of(const Arguments& arguments, const Dataset& dataset) {
     job.settings.insert(job.settings.end(), {"--device", arguments.device});
   job.sbatch_options = arguments.sbatch_options;
   job.logs = slurm_folder(job.store);
+  if (!arguments.local_folder.empty())
+    job.local = local_store_of(arguments.local_folder, job.store);
   return job;
 }
 
@@ -143,6 +158,7 @@ int run_slurm(const Arguments& arguments) {
   const TemporaryFolder own;
   DatasetRequest request = arguments.request();
   request.database_folder = own.path();
+  request.local_folder.clear();  // that is the nodes'
   Dataset dataset = open_dataset(request, Access::build, disk);
   SlurmJob job = job_of(arguments, dataset);
   OwnMark mark(dataset, job);

@@ -5,6 +5,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
+
 namespace ds {
 namespace {
 
@@ -28,6 +31,15 @@ std::string without_patterns(const std::string& path) {
   for (const char c : path)
     text += c == '%' ? "%%" : std::string(1, c);
   return text;
+}
+
+/// '"${TMPDIR:?}"/x' of "$TMPDIR/x".
+std::string local_text(const std::string& local) {
+  if (local.empty() || local.front() != '$') return shell_quoted(local);
+  const std::size_t end = std::min(local.find('/'), local.size());
+  const std::string rest = local.substr(end);
+  return fmt::format("\"${{{}:?}}\"{}", local.substr(1, end - 1),
+                     rest.empty() ? "" : shell_quoted(rest));
 }
 
 constexpr const char* k_submission_text = R"(
@@ -84,7 +96,14 @@ code=0
 build=("$dsbuild" build "$recipe" --store "$store" --database "$tmp/database" --keep-going --json "${settings[@]}")
 case $1 in
   shard)  # makes its share of the images; their files in a folder are the last job's to place
-    run "${build[@]}" -o "$tmp/out" --shard "$SLURM_ARRAY_TASK_ID/$shards" || code=$?
+    share=(-o "$tmp/out" --no-files --shard "$SLURM_ARRAY_TASK_ID/$shards")
+    local=$(node_store)
+    [ -z "$local" ] || share+=(--local "$local")
+    run "${build[@]}" "${share[@]}" || code=$?
+    # A build that was killed could not bring what it had made.
+    if [ "$code" -ne 0 ] && [ -d "$local/records" ]; then
+      "$dsbuild" store gather "$local" "$store" --database "$tmp/database" --json || code=$?
+    fi
     go_on_later
     ;;
   last)  # makes what shards left, places the files, writes the manifest, leaves the database in the store
@@ -120,6 +139,8 @@ std::string slurm_script(const SlurmJob& job) {
   set("logs", shell_quoted(job.logs.string()));
   set("logs_pattern", shell_quoted(without_patterns(job.logs.string())));
   set("mark", job.mark.empty() ? "''" : shell_quoted(job.mark.string()));
+  // Only a node knows what a job's variables are.
+  text += fmt::format("node_store() {{ printf %s {}; }}\n", local_text(job.local));
   return text + k_submission_text + k_job_text;
 }
 

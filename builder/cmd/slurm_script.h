@@ -18,6 +18,9 @@ struct SlurmJob {
   std::vector<std::string> sbatch_options;  ///< as they were given
   std::filesystem::path logs;
   std::filesystem::path mark;  ///< removed at the end; empty: there is none
+  /// A store on each node's own disk that takes what shards make until their end; empty: there is
+  /// none. "$NAME" in front is a variable of the job's.
+  std::string local;
 };
 
 /// One bash script: run as it is it submits itself, the shards as a job array ("SCRIPT shard") and

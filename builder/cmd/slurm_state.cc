@@ -3,6 +3,7 @@
 
 #include "builder/cmd/run_program.h"
 #include "builder/store/host.h"
+#include "tracer/base/error.h"
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -85,6 +86,22 @@ nlohmann::json to_json(const SlurmMark& mark) {
           {"user", mark.user},
           {"host", mark.host},
           {"state", name_of(state_of(mark))}};
+}
+
+void refuse_filled_store(const SlurmMark& mark, std::string_view what) {
+  const SlurmState state = state_of(mark);
+  if (state == SlurmState::gone) return;
+  const std::string store = mark.file.parent_path().parent_path().string();
+  if (state == SlurmState::running)
+    fail(ErrorKind::usage,
+         "{}: {}, fill this store now, and {} must not work in it beside them; wait for them "
+         "(dsbuild status), or end them by scancel {}",
+         store, jobs_text(mark), what, fmt::join(mark.jobs, " "));
+  fail(ErrorKind::usage,
+       "{}: {}, may fill this store now, and {} must not work in it beside them: squeue does not "
+       "say "
+       "here whether they still do; remove {} if not",
+       store, jobs_text(mark), what, mark.file.string());
 }
 
 }  // namespace ds

@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <string>
+#include <string_view>
 
 namespace ds {
 
@@ -18,5 +19,9 @@ std::string jobs_text(const SlurmMark& mark);
 /// The same and the jobs' state.
 std::string to_text(const SlurmMark& mark);
 nlohmann::json to_json(const SlurmMark& mark);
+
+/// Throws Error(usage) where the mark's jobs fill the store now, or may: `what` ("a plain build") keeps
+/// a database and locks in the store, of which they know nothing.
+void refuse_filled_store(const SlurmMark& mark, std::string_view what);
 
 }  // namespace ds

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "builder/cmd/gathering.h"
 #include "builder/cmd/plan_text.h"
+#include "builder/cmd/shell_quoted.h"
+#include "builder/cmd/slurm_state.h"
 #include "builder/cmd/stop_signal.h"
 #include "builder/cmd/verbs.h"
 #include "builder/cmd/work_progress.h"
@@ -40,13 +43,25 @@ fs::path store_folder_of(const Arguments& arguments, Disk& disk) {
   return dataset.store->folder();
 }
 
+/// What the jobs made is of no dataset that the database knows before a build places it.
+void refuse_gc(const SlurmMark& mark) {
+  refuse_filled_store(mark, "store gc");
+  fail(ErrorKind::usage,
+       "{}: {}, ended before the dataset was whole, and gc would remove what they made: go on by "
+       "dsbuild slurm or dsbuild build {}, then collect; or remove {} to give that up",
+       mark.file.parent_path().parent_path().string(), jobs_text(mark),
+       shell_quoted(mark.recipe.string()), mark.file.string());
+}
+
 /// `alone`: waits for whoever has the database open, and others wait then.
 OpenStore open_store(const Arguments& arguments, bool alone, Disk& disk) {
   const fs::path folder = store_folder_of(arguments, disk);
   OpenStore open{std::make_unique<Store>(folder, disk), nullptr, nullptr};
-  if (is_read_only(folder)) {
+  const std::optional<SlurmMark> mark = find_slurm_mark(*open.store);
+  if (alone && mark) refuse_gc(*mark);
+  if (mark || is_read_only(folder)) {
     if (alone) fail(ErrorKind::io, "{}: may not be written to", folder.string());
-    open.database = open_database_copy(*open.store);
+    open.database = open_database_copy(*open.store, mark.has_value());
     return open;
   }
   open.claims = std::make_unique<Claims>(folder / "lock");
@@ -77,10 +92,6 @@ void check_all_known(const Store& store, const StoreUse& use) {
 
 std::string amount_text(const Amount& amount) {
   return fmt::format("{} files, {:.1f} MB", amount.files, static_cast<double>(amount.bytes) / 1e6);
-}
-
-nlohmann::json to_json(const Amount& amount) {
-  return {{"files", amount.files}, {"bytes", amount.bytes}};
 }
 
 /// "20G", "500M", "1000": powers of 1,000.
@@ -124,7 +135,7 @@ int run_stats(const Arguments& arguments, Disk& disk) {
                 {"named", kinds},
                 {"unnamed", to_json(unnamed)},
                 {"missing", use.missing},
-                {"temporaries", to_json({use.temporaries.size(), use.temporary_bytes})}});
+                {"temporaries", to_json(Amount{use.temporaries.size(), use.temporary_bytes})}});
     return 0;
   }
   say(Stream::result, "{}\n", open.store->folder().string());
@@ -192,6 +203,24 @@ int run_gc(const Arguments& arguments, Disk& disk) {
   return 0;
 }
 
+enum class Found { whole, removed, left };
+
+/// Removes a damaged file, and one that has gone meanwhile counts as removed; each is said.
+Found read_and_remove(Store& store, Store::Kind kind, Hash128 hash) {
+  try {
+    if (kind == Store::Kind::object ? store.intact(hash) : store.get_record(hash).has_value())
+      return Found::whole;
+    return store.examine(kind, hash) == Store::Health::damaged ? Found::left : Found::removed;
+  } catch (const Error& error) {  // cannot be read at all
+    warn(error.what());
+    return Found::left;
+  }
+}
+
+int run_store_gather(const Arguments& arguments, Disk& disk) {
+  return run_gather(arguments, store_folder_of(arguments, disk), disk);
+}
+
 int run_store_verify(const Arguments& arguments, Disk& disk) {
   const OpenStore open = open_store(arguments, false, disk);
   const std::atomic<bool>& stop = stop_on_signal();
@@ -200,36 +229,47 @@ int run_store_verify(const Arguments& arguments, Disk& disk) {
     open.store->visit_files(kind, [&](const Store::StoredFile& file) {
       if (file.hash) all.emplace_back(kind, *file.hash);
     });
-  std::uint64_t damaged = 0, done = 0;
+  std::uint64_t damaged = 0, left = 0, done = 0;
   {
     WorkProgress progress("files of the store read");
     for (const auto& [kind, hash] : all) {
       if (stop) fail(ErrorKind::cancelled, "stopped");
-      const bool whole = kind == Store::Kind::object ? open.store->intact(hash)
-                                                     : open.store->get_record(hash).has_value();
-      damaged += whole ? 0U : 1U;
+      const Found found = read_and_remove(*open.store, kind, hash);
+      damaged += found == Found::whole ? 0U : 1U;
+      left += found == Found::left ? 1U : 0U;
       progress(++done, all.size());
     }
   }
   const std::uint64_t missing =
       look_at_store(*open.store, *open.database, arguments.forget, stop).missing;
   if (arguments.json)
-    print_json({{"files", all.size()}, {"damaged", damaged}, {"missing", missing}});
+    print_json(
+        {{"files", all.size()}, {"damaged", damaged}, {"not_removed", left}, {"missing", missing}});
   else
     say(Stream::report,
-        "{} files read, {} damaged and removed; {} objects that datasets name are missing{}\n",
-        all.size(), damaged, missing,
-        damaged + missing > 0 ? "; dsbuild build makes them again" : "");
+        "{} files read, {} damaged{}; {} objects that datasets name are missing{}\n", all.size(),
+        damaged,
+        left > 0 ? fmt::format(" ({} of them could not be removed)", left) : " and removed",
+        missing, damaged + missing > 0 ? "; dsbuild build makes them again" : "");
   return damaged + missing > 0 ? 1 : 0;
 }
 
 }  // namespace
 
 int run_store(const Arguments& arguments) {
-  static constexpr std::array<std::pair<std::string_view, int (*)(const Arguments&, Disk&)>, 3>
-      k_tasks{{{"stats", run_stats}, {"gc", run_gc}, {"verify", run_store_verify}}};
+  static constexpr std::array<std::pair<std::string_view, int (*)(const Arguments&, Disk&)>, 4>
+      k_tasks{{{"stats", run_stats},
+               {"gc", run_gc},
+               {"verify", run_store_verify},
+               {"gather", run_store_gather}}};
   if (arguments.store_task != "gc" && (!arguments.older.empty() || !arguments.size.empty()))
     fail(ErrorKind::usage, "store {}: --older and --size are for gc", arguments.store_task);
+  if (arguments.store_task != "gather" &&
+      (!arguments.other.empty() || !arguments.database_folder.empty()))
+    fail(ErrorKind::usage, "store {}: a second store and --database are for gather",
+         arguments.store_task);
+  if (arguments.store_task == "gather" && (arguments.dry_run || arguments.forget))
+    fail(ErrorKind::usage, "store gather: --dry-run and --forget are for gc");
   RealDisk disk;
   std::vector<std::string_view> known;
   for (const auto& [name, run] : k_tasks) {

@@ -65,7 +65,9 @@ class Execution {
         observer_(observer),
         stop_(stop),
         maker_(dataset, inputs, plan.texts, disk, factory,
-               options.copy ? Placing::copy : Placing::share) {}
+               options.wanted == Wanted::store
+                   ? std::nullopt
+                   : std::optional(options.copy ? Placing::copy : Placing::share)) {}
 
   BuildResult run();
 
@@ -390,6 +392,12 @@ bool Execution::take_standing_manifest(const ListedImages& images, const Manifes
 }
 
 void Execution::finish() {
+  if (options_.wanted == Wanted::store) {
+    ListedImages all;
+    for (const PlannedImage& image : plan_.images)
+      if (!image.error) all.made.push_back(&image);
+    return find_capped(all);
+  }
   if (is_as_planned() && plan_.manifest.current()) {
     const ListedImages images = look_at_images(*plan_.placed, true);
     auto sources = sources_as_planned(plan_);

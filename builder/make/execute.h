@@ -18,6 +18,9 @@ struct BuildOptions {
   bool keep_going = false;  ///< make the images that can be made where others fail
   bool force = false;       ///< trace every image again
   bool copy = false;        ///< no file shares anything with the store
+  /// Of which the plan must be, too. Where files are not wanted, what is counted as built went into
+  /// the store, and the folder and the manifest stay as they are.
+  Wanted wanted = Wanted::files;
   /// Where some died, nothing is done beside the image under way, so that it is known which one it
   /// is if one dies again, and what they died at comes first.
   EarlierProcesses earlier = {};

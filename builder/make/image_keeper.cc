@@ -59,7 +59,8 @@ std::vector<Hash128> products_of(const PlannedImage& image) {
 
 }  // namespace
 
-ImageKeeper::ImageKeeper(Dataset& dataset, const TextSet& texts, Disk& disk, Placing placing)
+ImageKeeper::ImageKeeper(Dataset& dataset, const TextSet& texts, Disk& disk,
+                         std::optional<Placing> placing)
     : dataset_(dataset), texts_(texts), disk_(disk), placing_(placing) {
   DS_ASSERT(dataset_.store != nullptr);
 }
@@ -225,8 +226,9 @@ ImageKeeper::Ready ImageKeeper::made_ready(const TracedImage& traced,
                               : traced.made_before[i]   ? made_before(output, before)
                               : output.plane == nullptr ? developed(ready, output, traced)
                                                         : plane_file(ready, output, traced);
-      ready.placed.push_back({output.path, traced.image->spec.id, output.kind, output.key,
-                              product.object, std::nullopt});
+      if (placing_)
+        ready.placed.push_back({output.path, traced.image->spec.id, output.kind, output.key,
+                                product.object, std::nullopt});
       if (output.kind == "image") picture = product;
     }
     if (picture) {
@@ -337,11 +339,12 @@ void ImageKeeper::commit(const std::vector<Ready*>& images) {
 }
 
 void ImageKeeper::place(const std::vector<Ready*>& images) {
+  if (!placing_) return;
   std::vector<Store::ObjectToPlace> files;
   for (const Ready* image : images)
     for (const PlacedFile& file : image->placed)
       files.push_back({file.object, dataset_.folder / file.path});
-  dataset_.store->place_all(files, placing_);
+  dataset_.store->place_all(files, *placing_);
   for (const Ready* image : images)
     for (const PlacedFile& file : image->placed) {
       stamped_.push_back(file);
@@ -355,7 +358,7 @@ void ImageKeeper::place_alone(const std::vector<PlacedFile>& files) {
   try {
     for (const PlacedFile& file : files) {
       const std::filesystem::path target = dataset_.folder / file.path;
-      dataset_.store->place(file.object, target, placing_);
+      dataset_.store->place(file.object, target, *placing_);
       stamped.push_back(file);
       stamped.back().stamp = stamp_of(target);
     }

@@ -10,6 +10,7 @@
 #include <deque>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <thread>
 #include <vector>
@@ -37,8 +38,8 @@ struct KeptImage {
 /// `remember_stamps` while nothing is under way.
 class ImageKeeper {
  public:
-  /// All must outlive this.
-  ImageKeeper(Dataset& dataset, const TextSet& texts, Disk& disk, Placing placing);
+  /// All must outlive this. Without `placing` no file is placed: the store has what was made.
+  ImageKeeper(Dataset& dataset, const TextSet& texts, Disk& disk, std::optional<Placing> placing);
   /// What is not finished is dropped.
   ~ImageKeeper();
   ImageKeeper(const ImageKeeper&) = delete;
@@ -91,7 +92,7 @@ class ImageKeeper {
   Dataset& dataset_;
   const TextSet& texts_;
   Disk& disk_;
-  Placing placing_;
+  std::optional<Placing> placing_;
   std::vector<PlacedFile> stamped_;  ///< of the thread while images are under way
   bool disk_failed_ = false;         ///< of the thread
 

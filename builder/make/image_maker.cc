@@ -37,7 +37,7 @@ class Stopwatch {
 }  // namespace
 
 ImageMaker::ImageMaker(Dataset& dataset, Inputs& inputs, const TextSet& texts, Disk& disk,
-                       RendererFactory factory, Placing placing)
+                       RendererFactory factory, std::optional<Placing> placing)
     : dataset_(dataset),
       inputs_(inputs),
       factory_(std::move(factory)),

@@ -25,7 +25,7 @@ class ImageMaker {
  public:
   /// All must outlive this.
   ImageMaker(Dataset& dataset, Inputs& inputs, const TextSet& texts, Disk& disk,
-             RendererFactory factory, Placing placing = Placing::share);
+             RendererFactory factory, std::optional<Placing> placing = Placing::share);
 
   /// Traces what the image lacks, and leaves the rest to the keeper, which tells what became of it.
   /// Throws Error for anything that stops this image; another image may go well. Throws NoDevice for

@@ -26,13 +26,13 @@ std::string who_builds(const Dataset& dataset) {
 
 }  // namespace
 
-SolePlan make_sole_plan(Dataset& dataset, Stamps stamps, bool force, Shard shard,
+SolePlan make_sole_plan(Dataset& dataset, Stamps stamps, bool force, Shard shard, Wanted wanted,
                         const std::function<void(const std::string& who)>& waits_for) {
   SolePlan sole;
   sole.lock = std::make_unique<FolderLock>(dataset.lock_folder);
   const auto plan = [&] {
     sole.inputs = std::make_unique<Inputs>(*dataset.database, stamps);
-    sole.plan = make_plan(dataset, *sole.inputs, force, shard);
+    sole.plan = make_plan(dataset, *sole.inputs, force, shard, wanted);
     return what_is_made(sole.plan);
   };
   std::string told;

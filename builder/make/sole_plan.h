@@ -19,7 +19,7 @@ struct SolePlan {
 
 /// Plans, and waits while another build makes something else of the folder: `waits_for` is then
 /// told whom for, once for each.
-SolePlan make_sole_plan(Dataset& dataset, Stamps stamps, bool force, Shard shard,
+SolePlan make_sole_plan(Dataset& dataset, Stamps stamps, bool force, Shard shard, Wanted wanted,
                         const std::function<void(const std::string& who)>& waits_for);
 
 }  // namespace ds

@@ -28,12 +28,14 @@ constexpr std::size_t k_most_changes = 4;
 
 class Planner {
  public:
-  Planner(Dataset& dataset, KeyMaker& keys, TextSet& texts, bool force, Stamps stamps)
+  Planner(Dataset& dataset, KeyMaker& keys, TextSet& texts, bool force, Wanted wanted,
+          Stamps stamps)
       : dataset_(dataset),
         database_(*dataset.database),
         keys_(keys),
         texts_(texts),
         force_(force),
+        wanted_(wanted),
         placed_(std::make_shared<PlacedFiles>(dataset, stamps)),
         rejected_(database_.pictures_with_rejected()) {
     known_.reserve(image_count(dataset.recipe));
@@ -60,6 +62,8 @@ class Planner {
     bool wanted = false;
   };
   bool in_store(Hash128 key);
+  std::string why_not_there(const PlannedImage& image, const OutputFile& output);
+  bool all_there(const PlannedImage& image);
   void plan_files(PlannedImage& image, bool changed);
   void find_kept(PlannedImage& image);
   void add_changes(PlannedImage& image, const PartHashes& before);
@@ -70,6 +74,7 @@ class Planner {
   KeyMaker& keys_;
   TextSet& texts_;
   bool force_;
+  Wanted wanted_;
   std::vector<Known> known_;
   HashIndex by_id_;
   std::shared_ptr<PlacedFiles> placed_;
@@ -94,6 +99,18 @@ bool Planner::in_store(Hash128 key) {
   return product && dataset_.store->has(product->object);
 }
 
+/// Empty where the output is where it is wanted.
+std::string Planner::why_not_there(const PlannedImage& image, const OutputFile& output) {
+  if (wanted_ == Wanted::files) return placed_->why_not_in_place(image.spec.id, output);
+  return in_store(output.key) ? "" : fmt::format("{} is not in the store", output.path);
+}
+
+bool Planner::all_there(const PlannedImage& image) {
+  return std::all_of(
+      image.keys.outputs.begin(), image.keys.outputs.end(),
+      [&](const OutputFile& output) { return why_not_there(image, output).empty(); });
+}
+
 void Planner::add_changes(PlannedImage& image, const PartHashes& before) {
   const auto changes = changes_since(image, before, texts_, database_);
   for (std::size_t i = 0; i < std::min(changes.size(), k_most_changes); ++i)
@@ -115,7 +132,7 @@ void Planner::find_kept(PlannedImage& image) {
 void Planner::plan_files(PlannedImage& image, bool changed) {
   for (const OutputFile& output : image.keys.outputs) {
     PlannedFile file{output, FileState::in_place};
-    const std::string reason = placed_->why_not_in_place(image.spec.id, output);
+    const std::string reason = why_not_there(image, output);
     if (!reason.empty() || force_) {
       // Where a property changed, that is the reason, and the files of older keys follow from it.
       if (!reason.empty() && !changed) image.reasons.push_back(reason);
@@ -156,7 +173,7 @@ void Planner::plan(PlannedImage& image, const PartHashes* known) {
   if (image.elsewhere) return;
   const bool changed = known != nullptr && *known != image.keys.parts;
   const bool as_known = known != nullptr && !changed;
-  if (as_known && !force_ && placed_->all_in_place(image)) return;
+  if (as_known && !force_ && all_there(image)) return;
   keys_.add_texts(image.spec);
   if (force_) image.reasons.emplace_back("forced");
   if (known == nullptr) image.reasons.emplace_back("new");
@@ -337,14 +354,25 @@ std::pair<std::string, PropertyChange> of_its_part(const char* part, PropertyCha
 
 }  // namespace
 
-Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
+namespace {
+
+/// The manifest, and what somebody changed in the dataset's folder.
+void look_at_folder(Dataset& dataset, Plan& plan) {
+  plan.labels = labels_of(dataset.recipe, plan);
+  plan.manifest = manifest_state(dataset, plan, *plan.placed);
+  plan.edited = edited_files(plan);
+}
+
+}  // namespace
+
+Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard, Wanted wanted) {
   check_licensed(dataset.recipe);
   check_vary(dataset.recipe, inputs);
   Plan plan;
   plan.data_version = dataset.database->data_version();
   std::optional<Snapshot> snapshot(std::in_place, dataset.database->connection());
   KeyMaker keys(dataset.recipe, inputs, plan.texts);
-  Planner planner(dataset, keys, plan.texts, force, inputs.stamps());
+  Planner planner(dataset, keys, plan.texts, force, wanted, inputs.stamps());
   plan.images.reserve(image_count(dataset.recipe));
   ImageSettler settler(dataset.recipe, inputs);
   Shared<std::filesystem::path> model;  // of the image before: a model's images follow each other
@@ -390,8 +418,10 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
   plan.drawn = settler.counts();
   plan.class_ids = class_ids(dataset.recipe, classes_of(plan.images));
   plan.placed = planner.placed();
-  plan.to_remove = plan.placed->left_over(plan.images, shard);
-  plan.forgets = planner.forgets();
+  if (wanted == Wanted::files) {
+    plan.to_remove = plan.placed->left_over(plan.images, shard);
+    plan.forgets = planner.forgets();
+  }
   std::vector<std::string> unlikely;
   plan.concerns = {count_unphysical(plan.images, inputs),
                    find_unlikely_sizes(dataset.recipe, plan.images, inputs, unlikely),
@@ -400,9 +430,7 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard) {
   for (const std::string& line : unlikely)
     warn(line);
   snapshot.reset();
-  plan.labels = labels_of(dataset.recipe, plan);
-  plan.manifest = manifest_state(dataset, plan, *plan.placed);
-  plan.edited = edited_files(plan);
+  if (wanted == Wanted::files) look_at_folder(dataset, plan);
   inputs.remember();
   plan.placed->remember_stamps();
   return plan;

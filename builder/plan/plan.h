@@ -26,7 +26,7 @@ inline constexpr const char* k_manifest_kind = "manifest";
 
 /// What an output file needs.
 enum class FileState {
-  in_place,  ///< the file is there and what its key says
+  in_place,  ///< the file is there and what its key says; of Wanted::store: in the store
   in_store,  ///< only to be put into the dataset's folder
   to_make,   ///< to be developed, encoded or traced
 };
@@ -106,9 +106,16 @@ struct Plan {
   DrawCounts drawn;  ///< of all shards' images
 };
 
+/// What is to be there in the end.
+enum class Wanted {
+  files,  ///< every image's files, in the dataset's folder
+  store,  ///< what they are placed from: no file and no manifest is looked at or made
+};
+
 /// `force`: every image of the shard is traced again. `inputs` must outlive what is executed of the
 /// plan.
-Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard = {});
+Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard = {},
+               Wanted wanted = Wanted::files);
 
 /// The film and file keys a plan's image had when it was last built, by the text of each part;
 /// nothing for a new image.

@@ -233,7 +233,8 @@ class WorkingFolder {
 
 void open_store(Dataset& dataset, const fs::path& folder, const DatasetRequest& request,
                 Access access, Disk& disk) {
-  dataset.store = std::make_unique<Store>(folder, disk);
+  dataset.store = std::make_unique<Store>(
+      folder, disk, request.local_folder.empty() ? fs::path() : normal(request.local_folder));
   if (!request.database_folder.empty()) {
     const fs::path own = normal(request.database_folder);
     dataset.claims = std::make_unique<Claims>(own / "lock");
@@ -241,11 +242,12 @@ void open_store(Dataset& dataset, const fs::path& folder, const DatasetRequest& 
     return;
   }
   // What fills the store from several machines keeps no database in it.
-  const bool is_filled = find_slurm_mark(*dataset.store).has_value();
-  if (access != Access::build && (is_filled || is_read_only(folder))) {
-    dataset.database = open_database_copy(*dataset.store, is_filled);
+  const std::optional<SlurmMark> mark = find_slurm_mark(*dataset.store);
+  if (access != Access::build && (mark || is_read_only(folder))) {
+    dataset.database = open_database_copy(*dataset.store, mark.has_value());
     return;
   }
+  if (mark && request.check_filled) request.check_filled(*mark);
   dataset.claims = std::make_unique<Claims>(folder / "lock");
   dataset.database = open_database(*dataset.store, *dataset.claims);
 }

@@ -8,12 +8,15 @@
 #include "builder/store/store.h"
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace ds {
+
+struct SlurmMark;
 
 /// Which dataset a command is about.
 struct DatasetRequest {
@@ -28,6 +31,11 @@ struct DatasetRequest {
   std::filesystem::path database_folder{};
   /// The folder is thrown away: the store is not told where it lies.
   bool in_passing = false;
+  /// --local: Store::local; empty: none.
+  std::filesystem::path local_folder{};
+  /// Told of a mark in the store before Access::build opens a database in it, and throws where that is
+  /// not to be; empty: never told.
+  std::function<void(const SlurmMark& mark)> check_filled{};
 };
 
 enum class Access {

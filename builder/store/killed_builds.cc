@@ -54,6 +54,8 @@ std::optional<std::int64_t> process_of_temporary(std::string_view name) {
   return number;
 }
 
+}  // namespace
+
 void remove_temporaries(const fs::path& folder) {
   // Another process may remove or rename what is being looked at; what vanishes needs no removal.
   std::error_code error;
@@ -64,8 +66,6 @@ void remove_temporaries(const fs::path& folder) {
     if (process && !runs_elsewhere(*process)) fs::remove(at->path(), ignored);
   }
 }
-
-}  // namespace
 
 bool was_killed(const BuildRow& build) {
   return build.outcome == "running" && build.host == host_name() && !runs_elsewhere(build.process);

@@ -4,6 +4,7 @@
 #include "builder/store/dataset.h"
 
 #include <cstdint>
+#include <filesystem>
 
 namespace ds {
 
@@ -16,5 +17,9 @@ bool was_killed(const BuildRow& build);
 /// and the store. `current` is the number of the build that asks. Costs nothing where none was
 /// killed.
 void clean_up_killed_builds(Dataset& dataset, std::int64_t current);
+
+/// Removes what processes of this machine that have ended left half-written in the folder, and in
+/// those below it.
+void remove_temporaries(const std::filesystem::path& folder);
 
 }  // namespace ds

@@ -27,11 +27,16 @@ enum class Placing {
 ///   records/ab/cdef...   what was made from which key (see made_record.h), named by the hash of
 ///   the text
 /// A file stands under its name only once it is whole and on the disk. What is read back is hashed
-/// again: a damaged file is removed and counts as absent, so nothing wrong leaves the store.
+/// again: a damaged file is removed, where it can be, and counts as absent, so nothing wrong leaves
+/// the store.
 class Store {
  public:
-  Store(std::filesystem::path folder, Disk& disk) : folder_(std::move(folder)), disk_(disk) {}
+  /// `local`: another store's folder, on this machine's own disk, that takes what is written; what
+  /// is read is looked for there first. Empty: there is none.
+  Store(std::filesystem::path folder, Disk& disk, std::filesystem::path local = {})
+      : folder_(std::move(folder)), local_(std::move(local)), disk_(disk) {}
   const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& local() const { return local_; }
 
   /// Throws Error(io) where the disk refuses.
   Hash128 put(std::span<const std::byte> bytes);
@@ -71,16 +76,23 @@ class Store {
   };
   enum class Kind { object, record };
   void visit_files(Kind kind, const std::function<void(const StoredFile&)>& visit) const;
+  enum class Health { absent, whole, damaged };
+  /// Reads the file, or else the one of the same name that is not local, and leaves all as it is.
+  /// `content` is filled where it is whole. Throws Error(io) where a file is there and cannot be read.
+  Health examine(Kind kind, Hash128 hash, std::string* content = nullptr) const;
   /// The text of a record, where it is whole.
   std::optional<std::string> get_record(Hash128 record);
   /// No error where there is no such file.
   void remove(Kind kind, Hash128 hash);
 
  private:
-  std::filesystem::path path_of(const char* kind, Hash128 hash) const;
-  std::optional<std::vector<std::byte>> read_whole(const std::filesystem::path& file, Hash128 hash);
+  /// Where it is to be written; where it lies, or would.
+  std::filesystem::path new_path(Kind kind, Hash128 hash) const;
+  std::filesystem::path path_of(Kind kind, Hash128 hash) const;
+  std::vector<std::filesystem::path> paths_of(Kind kind, Hash128 hash) const;
+  std::optional<std::string> read_whole(Kind kind, Hash128 hash);
 
-  std::filesystem::path folder_;
+  std::filesystem::path folder_, local_;
   Disk& disk_;
 };
 

@@ -30,13 +30,12 @@ void set_aside(const fs::path& file) {
     fs::remove(file.string() + side, error);
 }
 
-/// Enters what records tell of and the database does not know.
+/// Enters what all records tell of.
 void refill(Database& database, Store& store) {
   Transaction transaction(database.connection());
   store.visit_records([&](const std::string& text) {
     try {
-      for (const MadeProduct& made : from_record(text))
-        if (!database.find_product(made.product.key)) database.put_product(made.product, made.run);
+      enter_record(database, text);
     } catch (const UnreadableRecord& error) {
       warn(error.what());  // of another version: what it tells of is made again
     }
@@ -79,6 +78,11 @@ void copy_database(const Store& store, const fs::path& folder) {
 }
 
 }  // namespace
+
+void enter_record(Database& database, const std::string& text) {
+  for (const MadeProduct& made : from_record(text))
+    if (!database.find_product(made.product.key)) database.put_product(made.product, made.run);
+}
 
 std::unique_ptr<Database> open_database(Store& store, Claims& claims) {
   auto database = open_or_renew(store.folder() / k_database_file, claims);

@@ -31,6 +31,9 @@ std::unique_ptr<Database> open_database_copy(Store& store, bool with_records = f
 std::unique_ptr<Database> open_local_database(Store& store, Claims& claims,
                                               const std::filesystem::path& folder);
 
+/// Enters what a record's text tells of and the database does not know. Throws UnreadableRecord.
+void enter_record(Database& database, const std::string& text);
+
 /// Puts a whole copy of a database that lies elsewhere in the place of the store's own, which nobody
 /// has open. Throws Error(io).
 void put_database(const Store& store, Database& database, const std::filesystem::path& folder,

@@ -4,7 +4,9 @@ import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
+import time
 
 from harness import IMAGES, SAMPLES, TinyCase, main
 
@@ -119,6 +121,50 @@ class SlurmScriptTest(TinyCase):
         self.assertFalse(self.out.exists())
         self.assertFalse((self.store / "dsbuild.sqlite").exists())
 
+    def own_store(self, place):
+        stores = list(place.glob("dsbuild-*-*"))
+        self.assertLessEqual(len(stores), 1)
+        return [path for store in stores for path in store.rglob("*") if path.is_file()]
+
+    def test_nodes_with_stores_of_their_own(self):
+        node = self.folder / "a node's disk"
+        self.slurm("--shards", "3", "--local", node)
+        shards = self.answers(101)
+        self.assertEqual(sum(one["gathered"]["records"]["files"] for one in shards), IMAGES)
+        self.assert_counts(self.answers(102)[0], images=IMAGES, built=IMAGES, traced=0)
+        self.assertEqual(self.own_store(node), [])
+        self.assert_as_on_one_machine()
+
+    def test_a_variable_of_the_job_names_the_place(self):
+        self.slurm("--shards", "2", "--local", "$TMPDIR/kept here")
+        self.assertEqual(sum(one["gathered"]["records"]["files"] for one in self.answers(101)), IMAGES)
+        self.assertTrue((self.folder / "local/kept here").is_dir())
+        self.assert_as_on_one_machine()
+        for place in ("scratch", "./scratch", "$", "$(id)", "$A B/x", "~/x"):
+            self.assertIn("slurm --local: wanted a folder that every node has", self.slurm("--local", place, code=2).err)
+
+    def test_a_killed_build_of_a_node_loses_only_what_was_under_way(self):
+        node = self.folder / "node"
+        (self.fake / "hold").touch()
+        slow = ["--set", "engine.spp=3000"]
+        script = self.slurm("--shards", "1", "--local", node, *slow).json["script"]
+        job = subprocess.Popen(["bash", script, "shard"], env={**self.environment, "SLURM_ARRAY_TASK_ID": "1"},
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        records = lambda: [path for path in self.own_store(node) if "records" in path.parts and path.name[0] != "."]
+        deadline = time.monotonic() + 60
+        while len(records()) < 2:
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+        build = subprocess.run(["pgrep", "-P", str(job.pid), "dsbuild"], capture_output=True, text=True, check=True).stdout
+        os.kill(int(build.split()[0]), signal.SIGKILL)
+        said = job.communicate(timeout=60)[0]
+        self.assertNotEqual(job.returncode, 0)
+        kept = len([path for path in (self.store / "records").rglob("*") if path.is_file()])
+        self.assertGreaterEqual(kept, 2, said)
+        subprocess.run(["bash", script, "last"], env=self.environment, check=True, stdout=subprocess.DEVNULL)
+        self.assertEqual(self.marks(), [])
+        self.assert_as_on_one_machine(*slow)
+
     def test_print_makes_nothing_and_its_script_submits_itself(self):
         run = self.slurm("--print", "--nodes", "5", "--", "--time=2:00:00", "-p", "long")
         self.assertFalse(self.store.exists() or self.out.exists() or (self.fake / "calls").exists())
@@ -204,6 +250,47 @@ class SlurmScriptTest(TinyCase):
                 codes.append(process.returncode)
             self.assertEqual(sorted(codes), [0, 2, 2, 2])
             self.assertEqual(len(self.marks()), 1)
+
+    def test_upkeep_and_plain_builds_keep_away(self):
+        (self.fake / "hold").touch()
+        script = pathlib.Path(self.slurm("--shards", "2").json["script"])
+        (self.fake / "known").write_text("101\n")
+        subprocess.run(["bash", script, "shard"], env={**self.environment, "SLURM_ARRAY_TASK_ID": "1"}, check=True,
+                       stdout=subprocess.DEVNULL)
+        files = {path: path.read_bytes() for path in self.store.rglob("*") if path.is_file()}
+        there = [self.recipe, "-o", self.out, "--store", self.store]
+        self.build("--set", "engine.spp=2", out=self.folder / "else", code=0)
+        away = (["build", *there], ["clean", self.recipe, "-o", self.out], ["store", "gc", self.store],
+                ["store", "gather", self.folder / "else", self.store])
+
+        def refused(why):
+            for command in away:
+                run = self.run_it(*command, env=self.environment)
+                self.assertEqual((run.code, len(run.err.splitlines())), (2, 1), run)
+                self.assertIn("jobs 101, 102 of ", run.err)
+                self.assertIn(why, run.err)
+
+        refused("fill this store now")
+        (self.fake / "mute").touch()
+        refused(f"remove {self.store}/slurm/1 if not")
+        (self.fake / "mute").unlink()
+        # What only looks is welcome, and what keeps no database there.
+        self.assertEqual(self.run_it("store", "stats", self.store, "--json", env=self.environment).code, 0)
+        self.assertEqual(self.run_it("store", "verify", self.store, "--json", env=self.environment).json["damaged"], 0)
+        self.assertEqual({path: path.read_bytes() for path in self.store.rglob("*") if path.is_file()}, files)
+        run = self.run_it("store", "gather", self.folder / "else", self.store, "--database", self.folder / "db", "--json",
+                          env=self.environment)
+        self.assertEqual((run.code, run.json["records"]["files"]), (0, IMAGES), run)
+        # The jobs have ended, however they did: gc would take what no dataset names yet, a build may go on.
+        (self.fake / "known").unlink()
+        run = self.run_it("store", "gc", self.store, env=self.environment)
+        self.assertEqual(run.code, 2, run)
+        self.assertIn("ended before the dataset was whole, and gc would remove what they made", run.err)
+        run = self.run_it("build", *there, "--json", env=self.environment)
+        self.assertTrue(0 < run.json["traced"] < IMAGES, run)
+        self.assertEqual(self.marks(), [])
+        self.assertEqual(self.run_it("store", "gc", self.store, env=self.environment).code, 0)
+        self.assert_as_on_one_machine()
 
     def test_refused_jobs_leave_no_mark(self):
         (self.fake / "refuse").touch()

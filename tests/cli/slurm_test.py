@@ -43,9 +43,12 @@ class SlurmTest(TinyCase):
                 self.cluster.start_node(name)
         self.cluster.wait_until_idle()
 
+    def options(self):
+        return []
+
     def submit(self, *arguments, code=0, settings=SLOW):
-        run = self.run_it("slurm", self.recipe, "-o", self.out, "--store", self.store, "--json", *settings, *arguments,
-                          env=self.cluster.environment)
+        run = self.run_it("slurm", self.recipe, "-o", self.out, "--store", self.store, "--json", *settings, *self.options(),
+                          *arguments, env=self.cluster.environment)
         self.assertEqual(run.code, code, run)
         return run
 
@@ -67,8 +70,12 @@ class SlurmTest(TinyCase):
     def marks(self):
         return [path for path in (self.store / "slurm").iterdir() if path.name.isdigit()]
 
+    def kept(self):
+        """Images that are kept anywhere."""
+        return len(self.records())
+
     def wait_for_records(self, count):
-        wait_for(lambda: len(self.records()) >= count, 120, lambda: f"{count} images kept: {self.cluster.jobs()}\n{self.logs()}")
+        wait_for(lambda: self.kept() >= count, 120, lambda: f"{count} images kept: {self.cluster.jobs()}\n{self.logs()}")
 
     def wait_for_end(self, seconds=240):
         wait_for(lambda: not self.marks(), seconds,
@@ -100,11 +107,20 @@ class SlurmTest(TinyCase):
     def test_a_node_dies(self):
         self.submit("--nodes", "2", "--shards", "2")
         wait_for(lambda: self.running("n2"), 60, self.cluster.jobs)
-        self.wait_for_records(3)
+        share = self.running("n2")[0].split("_")[1]
+        wait_for(lambda: self.kept_by_n2(f"{share}/2") > 0, 120, self.logs)  # the other may be first, and by far
         self.cluster.kill_node("n2")
         self.wait_for_end()  # on the other
-        self.assertLess(self.traced(), IMAGES)
+        self.assert_traced_by_others(self.traced())
         self.assert_as_one_build()
+
+    def kept_by_n2(self, share):
+        run = self.run_it("status", self.recipe, "-o", self.out, "--shard", share, "--json", *SLOW, env=self.cluster.environment)
+        return run.json["kept"]
+
+    def assert_traced_by_others(self, count):
+        """What it had kept is not traced again."""
+        self.assertLess(count, IMAGES)
 
     def test_cancelled_and_started_again(self):
         jobs = self.submit("--nodes", "2", "--shards", "2").json["jobs"]
@@ -172,6 +188,17 @@ class SlurmTest(TinyCase):
         self.wait_for_end()
         self.assert_as_one_build(kept_twice=True)
 
+    def test_nothing_else_works_in_the_store_meanwhile(self):
+        jobs = self.submit("--nodes", "2", "--shards", "2").json["jobs"]
+        self.wait_for_records(1)
+        for command in (["build", self.recipe, "-o", self.out, "--store", self.store, *SLOW],
+                        ["clean", self.recipe, "-o", self.out], ["store", "gc", self.store]):
+            run = self.run_it(*command, env=self.cluster.environment)
+            self.assertEqual(run.code, 2, run)
+            self.assertIn(f"jobs {jobs[0]}, {jobs[1]} of ", run.err)
+        self.wait_for_end()
+        self.assert_as_one_build()
+
     @unittest.skipUnless(os.environ.get("DSBUILD_TEST_SPEED"), "DSBUILD_TEST_SPEED=1 measures two nodes against one")
     def test_two_nodes_are_nearly_twice_as_fast(self):
         seconds = {}
@@ -184,6 +211,47 @@ class SlurmTest(TinyCase):
             print(f"{nodes} nodes: {seconds[nodes]:.1f} s, load {os.getloadavg()[0]:.1f}", flush=True)
         print(f"ratio {seconds[1] / seconds[2]:.2f}")
         self.assertGreaterEqual(seconds[1] / seconds[2], 1.9)
+
+
+class LocalStoresTest(SlurmTest):
+    """The same with a store on each node's own disk: what is kept there reaches the shared one, however a job ends."""
+
+    def options(self):
+        return ["--local", self.cluster.local / "kept"]
+
+    def own_records(self, node):
+        """As the node sees its disk."""
+        place = pathlib.Path(f"/proc/{self.cluster.nodes[node].pid}/root") / str(self.cluster.local).lstrip("/") / "kept"
+        return [path for path in place.glob("*/records/*/*") if not path.name.startswith(".")]
+
+    def kept_by_n2(self, share):
+        return len(self.own_records("n2"))
+
+    def assert_traced_by_others(self, count):
+        """What was on its disk alone is lost with it."""
+        self.assertEqual(count, IMAGES)
+
+    def kept(self):
+        own = {path.name for node in self.cluster.nodes for path in self.own_records(node)}
+        return len(own | {path.name for path in self.records()})
+
+    def wait_for_end(self, seconds=240):
+        super().wait_for_end(seconds)
+        for node in self.cluster.nodes:
+            self.assertEqual(self.own_records(node), [])
+
+    def test_a_killed_share_is_brought_by_the_next(self):
+        self.submit("--nodes", "1", "--shards", "2")
+        wait_for(lambda: len(self.own_records("n1")) >= 2, 120, self.logs)
+        # All processes of the job at once: nothing of it is left that could bring anything.
+        kept, job = len(self.own_records("n1")), self.running()[0]
+        self.cluster.ask("scancel", "--full", "--signal=KILL", job)
+        self.wait_for_end()
+        self.assertGreaterEqual(kept, 2)
+        self.assert_as_one_build()
+
+    test_time_limit = test_two_at_once = test_a_shard_twice_at_once = None
+    test_nothing_else_works_in_the_store_meanwhile = test_two_nodes_are_nearly_twice_as_fast = None
 
 
 if __name__ == "__main__":

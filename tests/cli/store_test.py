@@ -4,6 +4,7 @@ import os
 import shutil
 import signal
 import sqlite3
+import subprocess
 import time
 
 from harness import IMAGES, TinyCase, main
@@ -52,7 +53,7 @@ class StoreTest(TinyCase):
         # Placed anew from what is left.
         shutil.rmtree(self.folder / "a/images")
         self.assert_counts(self.make("a"), built=IMAGES, traced=0)
-        self.assertEqual(self.task("verify"), {"files": len(wanted), "damaged": 0, "missing": 0})
+        self.assertEqual(self.task("verify"), {"files": len(wanted), "damaged": 0, "not_removed": 0, "missing": 0})
         # What went is traced again.
         self.assert_counts(self.make("a", "--set", "engine.spp=2"), traced=IMAGES)
 
@@ -116,6 +117,25 @@ class StoreTest(TinyCase):
         shutil.rmtree(self.folder / "a/images")
         self.make("a")
         self.task("verify")
+
+    def test_verify_of_a_store_that_may_not_be_written_to(self):
+        self.make("a", "--copy")
+        victims = sorted(self.files("objects"))[:2] + sorted(self.files("records"))[:1]
+        for victim in victims:
+            data = victim.read_bytes()
+            victim.chmod(0o644)
+            victim.write_bytes(bytes([data[0] ^ 1]) + data[1:])
+        for words in (["--bind", self.store], ["-o", "remount,bind,ro"]):
+            done = subprocess.run(["mount", *words, self.store], capture_output=True, text=True, check=False)
+            if done.returncode != 0:
+                self.skipTest(f"cannot mount here: {done.stderr.strip()}")
+            if words[0] == "--bind":
+                self.addCleanup(subprocess.run, ["umount", self.store], check=True)
+        run = self.run_it("store", "verify", self.store, "--json")
+        self.assertEqual((run.code, run.json["damaged"], run.json["not_removed"]), (1, 3, 3), run)
+        for victim in victims:
+            self.assertIn(f"{victim}: a file of the store is damaged, and stays: ", run.err)
+        self.assertIn("3 damaged (3 of them could not be removed)", self.run_it("store", "verify", self.store).out)
 
     def test_gc_waits_for_a_build(self):
         self.make("a", "--set", "engine.spp=2")

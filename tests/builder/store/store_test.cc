@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/store/store.h"
 
+#include "tracer/base/disk_error.h"
 #include "tracer/base/files.h"
 
 #include <gtest/gtest.h>
+
+#include <cerrno>
+#include <set>
+#include <string>
 
 namespace ds {
 namespace {
@@ -83,6 +88,46 @@ TEST_F(StoreTest, ShowsWholeRecordsOnly) {
   std::vector<std::string> seen;
   store_.visit_records([&](const std::string& text) { seen.push_back(text); });
   EXPECT_EQ(seen, std::vector<std::string>{"one\n"});
+}
+
+/// What may not be removed.
+class KeepingDisk : public RealDisk {
+  void remove(const fs::path& file) override { fail_system(file, "remove", EPERM); }
+};
+
+TEST_F(StoreTest, ADamagedFileThatStaysCountsAsAbsent) {
+  const Hash128 hash = store_.put(bytes_of("some bytes"));
+  damage(hash);
+  KeepingDisk disk;
+  Store store(store_.folder(), disk);
+  EXPECT_FALSE(store.get(hash));
+  EXPECT_EQ(store.examine(Store::Kind::object, hash), Store::Health::damaged);
+  store.put(bytes_of("some bytes"));
+  EXPECT_EQ(store.examine(Store::Kind::object, hash), Store::Health::whole);
+  EXPECT_EQ(store.examine(Store::Kind::object, hash_text("none")), Store::Health::absent);
+}
+
+TEST_F(StoreTest, WritesToTheLocalStoreAndReadsBoth) {
+  const Hash128 old = store_.put(bytes_of("old"));
+  store_.put_record("old record");
+  const fs::path own = folder_.path() / "local";
+  Store both(store_.folder(), disk_, own);
+  EXPECT_TRUE(both.has(old) && both.get(old));
+  EXPECT_EQ(both.put(bytes_of("old")), old);
+  EXPECT_FALSE(fs::exists(own)) << "what is there is not written again";
+  const Hash128 made = both.put(bytes_of("new"));
+  both.put_record("new record");
+  EXPECT_TRUE(both.has(made) && both.get(made) && both.get_record(hash_text("new record")));
+  EXPECT_FALSE(store_.has(made));
+  EXPECT_TRUE(fs::exists(own / "objects" / made.hex().substr(0, 2) / made.hex().substr(2)));
+  both.place(made, folder_.path() / "placed");
+  EXPECT_EQ(read_text_file(folder_.path() / "placed"), "new");
+  std::set<std::string> records;
+  both.visit_records([&](const std::string& text) { records.insert(text); });
+  EXPECT_EQ(records, (std::set<std::string>{"new record", "old record"}));
+  damage(old);
+  both.put(bytes_of("old"));
+  EXPECT_TRUE(both.intact(old));
 }
 
 }  // namespace
