@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """`dsbuild build --shard I/N`: together the shards make what one build makes, to the byte."""
 import json
+import os
 import shutil
+import subprocess
 
 from harness import SAMPLES, TinyCase, main
 
@@ -96,13 +98,38 @@ class ShardsTest(TinyCase):
         self.assert_whole()
 
     def test_machines_that_share_no_disk(self):
-        # Each has a store of its own; the files of all stores, but for the databases, are put together.
+        # Each has a store of its own; the files of all stores, but for the databases, may simply be put together.
         for number in range(1, SHARDS + 1):
             store = self.folder / f"store-{number}"
             self.shard(number, "--store", store, out=self.folder / f"out-{number}")
             for kind in ("objects", "records"):
                 shutil.copytree(store / kind, self.folder / "store" / kind, dirs_exist_ok=True)
         self.assert_counts(self.build(*VIEWS, "--store", self.folder / "store"), built=IMAGES, traced=0, developed=0)
+        self.assert_whole()
+
+    def test_the_documented_line_of_gnu_parallel(self):
+        version = shutil.which("parallel") and subprocess.run(["parallel", "--version"], capture_output=True, text=True, check=False)
+        if not version or "GNU parallel" not in version.stdout:
+            self.skipTest("no GNU parallel here")
+        text = (self.source / "recipes/README.md").read_text().split("GNU parallel does the same by ssh:\n\n")[1].split("\n\n")[0]
+        # The hosts are this one, by a shell in ssh's place; paths and numbers are this test's, the words are the page's.
+        hosts = self.folder / "hosts"
+        (self.folder / "bin").mkdir()
+        ssh = f'while [[ $1 == -* ]]; do shift; done\necho "$1" >>{hosts}\nshift\n[ "$1" != -- ] || shift\nexec bash -c "$*"'
+        for name, lines in (("ssh", ssh), ("dsbuild", f'exec {self.dsbuild} "$@"')):
+            (self.folder / "bin" / name).write_text(f"#!/bin/bash\n{lines}\n")
+            (self.folder / "bin" / name).chmod(0o755)
+        for before, after in (("/tmp/", f"{self.folder}/tmp-"), ("recipe.toml", "tiny/recipe.toml"), ("/16", f"/{SHARDS}"),
+                              ("seq 16", f"seq {SHARDS}"), (" -k ", f" -k {' '.join(VIEWS)} "),
+                              ("-o out", f"-o out {' '.join(VIEWS)}")):
+            self.assertIn(before, text)
+            text = text.replace(before, after)
+        environment = {**os.environ, "PATH": f"{self.folder}/bin:{os.environ['PATH']}", "HOME": str(self.folder)}
+        run = subprocess.run(["bash", "-euc", text], cwd=self.folder, env=environment, capture_output=True, text=True, timeout=300,
+                             check=False)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        self.assertIn("16 built from the store", run.stdout)
+        self.assertEqual(set(hosts.read_text().split()), {"host1", "host2"})
         self.assert_whole()
 
     @staticmethod
