@@ -7,6 +7,11 @@ install(TARGETS dsbuild_images LIBRARY DESTINATION lib/dsbuild)
 install(DIRECTORY "${CMAKE_SOURCE_DIR}/assets" "${CMAKE_SOURCE_DIR}/recipes" DESTINATION "${CMAKE_INSTALL_DATADIR}/dsbuild")
 install(FILES "${CMAKE_SOURCE_DIR}/README.md" "${CMAKE_SOURCE_DIR}/CHANGELOG.md" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(FILES "${CMAKE_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}" RENAME copyright)
+# The notices of what is compiled in: libraries that are headers, as Debian's packages have them.
+foreach(library tinygltf nlohmann-json3 cli11 tomlplusplus)
+  string(REGEX REPLACE "^(tinygltf|cli11|tomlplusplus)$" "lib\\1" package "${library}")
+  install(FILES "/usr/share/doc/${package}-dev/copyright" DESTINATION "${CMAKE_INSTALL_DOCDIR}/notices" RENAME "${library}")
+endforeach()
 
 # Written by the program itself, from its table of verbs.
 set(texts "${CMAKE_BINARY_DIR}/texts")
