@@ -28,6 +28,8 @@ namespace ds {
 ///   meshes_damaged   model files, and environments with a mesh file, that lost faces when read
 ///   models_unlikely  models with colours, uvs or normals that images read and that are hardly what is
 ///                    meant
+///   own_materials_partial  models shown in the materials of their files (materials.assign = "own") that
+///                    have faces without one, or what of it is not shown
 struct Concern {
   std::string name;
   std::uint64_t count = 0;            ///< 0: none

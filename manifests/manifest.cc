@@ -162,6 +162,7 @@ json to_json_value(const DatasetRecord& dataset) {
          "world"}}}};
   if (!dataset.about.empty()) object["about"] = dataset.about;
   if (!dataset.shapes.empty()) object["shapes"] = dataset.shapes;
+  if (!dataset.own_materials.empty()) object["own_materials"] = dataset.own_materials;
   if (!dataset.hierarchies.empty()) object["hierarchies"] = dataset.hierarchies;
   if (!dataset.draws.empty()) object["draws"] = to_json_value(dataset.draws);
   for (const auto& [name, plane] : dataset.planes)

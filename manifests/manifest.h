@@ -45,7 +45,7 @@ namespace ds {
 inline constexpr int k_manifest_format = 2;
 /// Counts up when lines or dataset.json gain a field, so that a build writes them anew. Readers need not
 /// know it.
-inline constexpr int k_manifest_fields = 3;
+inline constexpr int k_manifest_fields = 4;
 
 /// One file of a dataset.
 struct FileRecord {
@@ -123,6 +123,9 @@ struct DatasetRecord {
   std::vector<std::pair<std::string, PlaneRecord>> planes{};
   /// Model -> shape_of its mesh, of all models that have one; not there where none has.
   std::map<std::string, std::string> shapes{};
+  /// Model -> names of the materials that its file gives faces, the one of id n at n - 1; of models that are
+  /// shown in these. Not there where none is.
+  std::map<std::string, std::vector<std::string>> own_materials{};
   /// Model -> what its file held that no mesh can, and how often, by MeshReport's names. Only
   /// models that were mended; "mended_models" is not there where none was.
   std::vector<std::pair<std::string, MendedDamage>> mended_models{};

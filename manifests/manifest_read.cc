@@ -386,6 +386,11 @@ DatasetRecord dataset_from_json(const std::string& text, const std::string& file
                    [](Fields& f, const char* name, std::string& to) { f.text(name, to); });
       dataset.shapes = {shapes.begin(), shapes.end()};
     }
+    if (object->contains("own_materials")) {
+      std::vector<std::pair<std::string, std::vector<std::string>>> own;
+      read_members(fields, *object, place, diagnostics, "own_materials", own, read_texts);
+      dataset.own_materials = {own.begin(), own.end()};
+    }
     if (object->contains("hierarchies")) {
       std::vector<std::pair<std::string, std::vector<std::string>>> hierarchies;
       read_members(fields, *object, place, diagnostics, "hierarchies", hierarchies, read_texts);

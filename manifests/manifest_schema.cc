@@ -181,6 +181,11 @@ json dataset_schema() {
       {"hierarchies", said(map_of(texts), "classes of further classifications")},
       {"shapes", said(map_of({{"type", "string"}, {"pattern", "^[0-9a-f]{76}$"}}),
                       "of models: what is alike of copies that are turned, scaled or meshed anew")},
+      {"own_materials",
+       said(
+           map_of(texts),
+           "of models shown in the materials of their files: what these call them, in the order of "
+           "the ids in the plane material_id, from 1")},
       {"counts", map_of(k_count)},
       {"licences",
        {{"type", "array"},
@@ -198,8 +203,8 @@ json dataset_schema() {
       {"concerns", map_of(object_of({{"count", k_count}, {"of", k_count}, {"examples", texts}},
                                     {"count", "of", "examples"}))},
       {"mended_models", map_of(map_of(k_count))}};
-  json required = fields_of(
-      fields, {"about", "shapes", "hierarchies", "draws", "planes", "concerns", "mended_models"});
+  json required = fields_of(fields, {"about", "shapes", "own_materials", "hierarchies", "draws",
+                                     "planes", "concerns", "mended_models"});
   return headed(object_of(std::move(fields), std::move(required)),
                 "manifest/dataset.json of a dataset of dsbuild");
 }

@@ -46,6 +46,8 @@ constexpr ConcernText k_texts[] = {
      true},
     {"models_unlikely", "models have colours, uvs or normals that are hardly what is meant", "",
      true},
+    {"own_materials_partial", "models have materials of their own that are not shown whole", "",
+     true},
 };
 
 const ConcernText& text_of(const Concern& concern) {

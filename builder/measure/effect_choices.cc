@@ -5,6 +5,7 @@
 #include "builder/measure/texture_mean.h"
 #include "tracer/base/error.h"
 #include "tracer/device/program_text.h"
+#include "tracer/scene/scene_reads.h"
 #include "tracer/scene/type_tables.h"
 
 #include <algorithm>
@@ -34,7 +35,8 @@ const NodeType& type_of(const Material& material) {
 std::vector<bool> worn_materials(const Scene& scene) {
   std::vector<bool> worn(scene.materials.size());
   for (const Object& object : scene.objects)
-    if (object.material >= 0) worn[index(object.material)] = true;
+    for (const int material : shown_materials(object))
+      worn[index(material)] = true;
   // Children come before the mix that holds them.
   for (std::size_t i = scene.materials.size(); i-- > 0;)
     for (const int child : scene.materials[i].children)

@@ -13,12 +13,14 @@ enum { DS_ALL_TEXTURES(DS_ROW) row_count };
 #define DS_TEXTURE_STACK 32
 #include "tracer/device/texture_code.h"
 #include "tracer/kernels/all_nodes.h"
+#include "tracer/scene/scene_reads.h"
 #include "tracer/scene/type_tables.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <set>
 #include <vector>
 
 namespace ds {
@@ -108,8 +110,12 @@ std::vector<Patch> patches_with(const Scene& scene, int texture) {
   std::vector<Patch> patches;
   double sum = 0;
   for (const Object& object : scene.objects) {
-    if (!shows_texture(scene, object.material, texture)) continue;
-    for (const auto& corners : object.mesh.triangles) {
+    std::set<int> showing;
+    for (const int material : shown_materials(object))
+      if (shows_texture(scene, material, texture)) showing.insert(material);
+    for (std::size_t i = 0; i < object.mesh.triangles.size(); ++i) {
+      if (!showing.contains(material_of_triangle(object, i))) continue;
+      const auto& corners = object.mesh.triangles[i];
       sum += area(object.mesh, corners);
       patches.push_back({&object.mesh, corners, sum});
     }

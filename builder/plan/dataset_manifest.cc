@@ -185,6 +185,8 @@ DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
     if (models.contains(model)) record.mended_models.emplace_back(model, what.damage);
   for (const auto& [model, shape] : plan.shapes)
     if (models.contains(model)) record.shapes.emplace(model, shape);
+  for (const auto& [model, names] : plan.own_materials)
+    if (models.contains(model)) record.own_materials.emplace(model, names);
   std::vector<std::pair<std::string, std::string>> texts;
   for (const auto& [kind, assets] : licensed_assets(recipe))
     for (auto& licence : licences_beside(kind, assets))

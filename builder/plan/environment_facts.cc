@@ -107,6 +107,8 @@ std::string canonical_colours(const Scene& scene) {
   dark.textures = scene.textures;
   dark.images = scene.images;
   dark.materials = scene.materials;
+  dark.own_materials = scene.own_materials;
+  dark.own_faces = scene.own_faces;
   for (Material& material : dark.materials)
     material.emits = false;
   return canonical_material(dark);

@@ -3,11 +3,16 @@
 
 #include "builder/plan/image_scene.h"
 #include "tracer/base/canonical.h"
+#include "tracer/base/error.h"
+#include "tracer/device/scene_effects.h"
+#include "tracer/scene/sdl.h"
 #include "tracer/scene/vary_material.h"
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace ds {
@@ -25,7 +30,7 @@ Scene material_of(const ImageSpec& image, const Recipe& recipe, Inputs& inputs) 
   std::vector<PropertyValue> values;
   for (const VaryPattern& vary : recipe.vary)
     values.push_back({vary.pattern, value_of(image, recipe, vary)});
-  return with_values(inputs.material(image.material_file), values);
+  return with_values(inputs.material(image), values);
 }
 
 std::string canonical_vary(const ImageSpec& image, const Recipe& recipe) {
@@ -68,24 +73,42 @@ void check_vary(const Recipe& recipe, Inputs& inputs) {
 
 namespace {
 
-/// Stands for the model where only the kinds of effects in a scene matter.
-Mesh stand_in() {
+/// Stands for the model where only the kinds of effects in a scene matter: a triangle of each of its own materials,
+/// where it shows these.
+Mesh stand_in(Scene& material) {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
-  mesh.triangles = {{0, 1, 2}};
+  if (material.own_materials.empty()) mesh.triangles = {{0, 1, 2}};
+  for (std::uint32_t number = 0; number < material.own_materials.size(); ++number) {
+    if (material.own_materials[number] < 0) continue;
+    mesh.triangles.push_back({0, 1, 2});
+    mesh.materials.push_back(number);
+  }
+  material.own_faces = materials_hash(mesh);
   return mesh;
 }
 
 }  // namespace
 
+Hash128 program_name_of(const Scene& material) {
+  DS_ASSERT(!material.own_materials.empty());
+  Scene own = material;
+  Mesh model = stand_in(own);
+  const SceneEffects effects = scene_effects(compose(Scene{}, own, std::move(model)), Camera{});
+  return hash_text(fmt::format("own {} {} {}", fmt::join(effects.materials, " "),
+                               effects.texture_stack, fmt::join(effects.textures, " ")));
+}
+
 Scene scene_without_model(const Recipe& recipe, Inputs& inputs, const ImageSpec& image) {
   const Scene& environment = inputs.environment(image.environment_folder);
-  const Scene material = material_of(image, recipe, inputs);
+  Scene material = material_of(image, recipe, inputs);
+  Mesh model = stand_in(material);
   EnvironmentChange gain = change_of(image);
   gain.turn_deg = 0;
-  return gain == EnvironmentChange{} ? compose(environment, material, stand_in())
-                                     : compose(changed(environment, gain), material, stand_in());
+  return gain == EnvironmentChange{}
+             ? compose(environment, material, std::move(model))
+             : compose(changed(environment, gain), material, std::move(model));
 }
 
 }  // namespace ds

@@ -11,6 +11,8 @@ namespace ds {
 
 /// The image's material with what materials.vary drew for it.
 Scene material_of(const ImageSpec& image, const Recipe& recipe, Inputs& inputs);
+/// Names what a program depends on of a model's own materials, which thousands of models have in common.
+Hash128 program_name_of(const Scene& material);
 /// Canonical text of what was drawn for it; "" where nothing is.
 std::string canonical_vary(const ImageSpec& image, const Recipe& recipe);
 /// Throws Error(recipe), all findings, where a pattern of materials.vary names no property of any material, or

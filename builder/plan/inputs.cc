@@ -92,25 +92,31 @@ KnownModel Inputs::look_at_model(const std::filesystem::path& file) {
   return *known;
 }
 
-/// Which parts there are is asked of the file once for each content.
-Hash128 Inputs::content_with_parts(const std::filesystem::path& file, const Hash128& content) {
-  if (!may_have_parts(file)) return content;
+std::vector<std::filesystem::path> Inputs::files_named(const char* kind,
+                                                       const std::filesystem::path& file,
+                                                       const Hash128& content, FilesOf* files_of) {
   const std::string question =
-      fmt::format("parts {} {}", content.hex(), file.parent_path().string());
-  std::vector<std::filesystem::path> parts;
+      fmt::format("{} {} {}", kind, content.hex(), file.parent_path().string());
+  std::vector<std::filesystem::path> files;
   if (const auto known = find_known(question)) {
     for (std::string_view rest = *known; !rest.empty();) {
       const std::size_t end = std::min(rest.find('\n'), rest.size());
-      if (end > 0) parts.emplace_back(rest.substr(0, end));
+      if (end > 0) files.emplace_back(rest.substr(0, end));
       rest.remove_prefix(std::min(end + 1, rest.size()));
     }
   } else {
-    parts = model_parts(file);
+    files = files_of(file);
     std::string text;
-    for (const std::filesystem::path& part : parts)
-      text += part.string() + "\n";
+    for (const std::filesystem::path& one : files)
+      text += one.string() + "\n";
     keep_known(question, text.empty() ? "\n" : text);
   }
+  return files;
+}
+
+Hash128 Inputs::content_with_parts(const std::filesystem::path& file, const Hash128& content) {
+  if (!may_have_parts(file)) return content;
+  const auto parts = files_named("parts", file, content, model_parts);
   if (parts.empty()) return content;
   CanonicalText whole;
   whole.add("file", content.hex());
@@ -223,6 +229,7 @@ std::optional<InputBounds> Inputs::image_bounds(const Image& image) {
   CanonicalText use;
   use.add("content", image.content.hex());
   use.add("gamma", image.gamma);
+  if (image.srgb) use.add("srgb", true);
   use.add("gain", image.gain);
   use.add("wrap", static_cast<int>(image.wrap));
   use.add("channel", static_cast<int>(image.channel));
@@ -244,6 +251,33 @@ void Inputs::look_at_pixels(Scene& scene) {
   const auto bounds = [this](const Image& image) { return image_bounds(image); };
   for (const std::string& line : add_unphysical_of_pixels(scene, bounds))
     warn(line);
+}
+
+const OwnMaterials& Inputs::own_materials(const std::filesystem::path& model) {
+  return once(own_materials_, model, [this](const auto& path) {
+    const Hash128 content = content_of_file(path);
+    const auto files = files_named("material files", path, content, own_material_files);
+    CanonicalText question;
+    question.add("own materials of", content_with_parts(path, content).hex());
+    question.add("model", path.string());
+    for (const std::filesystem::path& file : files) {
+      std::error_code error;
+      question.add("file", std::filesystem::is_regular_file(file, error)
+                               ? content_of_file(file).hex()
+                               : std::string());
+    }
+    if (const auto known = find_known(question.text())) return own_materials_from_text(*known);
+    OwnMaterials own = read_own_materials(path);
+    keep_known(question.text(), own_materials_text(own));
+    return own;
+  });
+}
+
+const Scene& Inputs::own_material(const std::filesystem::path& model) {
+  return once(own_scenes_, model, [this](const auto& path) {
+    return own_scene(own_materials(path), model_has(path).colors,
+                     [this](const auto& image) { return content_of_file(image); });
+  });
 }
 
 const Scene& Inputs::material(const std::filesystem::path& file) {
@@ -280,6 +314,7 @@ const EnvironmentFacts& Inputs::environment_facts(const std::filesystem::path& f
 
 std::optional<std::string> Inputs::find_known(const std::string& question) {
   if (program_.empty() || stamps_ == Stamps::ignore) return std::nullopt;
+  if (const auto at = new_known_.find(question); at != new_known_.end()) return at->second;
   return database_.find_known(program_, question);
 }
 

@@ -4,8 +4,10 @@
 #include "builder/db/database.h"
 #include "builder/plan/environment_facts.h"
 #include "builder/recipe/camera_fit.h"
+#include "builder/recipe/recipe.h"
 #include "tracer/base/error.h"
 #include "tracer/scene/mesh.h"
+#include "tracer/scene/own_materials.h"
 #include "tracer/scene/scene.h"
 #include "tracer/scene/texture_bounds.h"
 
@@ -91,6 +93,15 @@ class Inputs {
     return {file, model_hashes(file), options};
   }
   ModelMeshes& meshes() { return meshes_; }
+  /// Those that its file gives its faces; throws what read_own_materials throws. What is not used of them is
+  /// in their notes.
+  const OwnMaterials& own_materials(const std::filesystem::path& model);
+  /// What own_scene makes of these.
+  const Scene& own_material(const std::filesystem::path& model);
+  /// That of an image: its material's, or its model's own.
+  const Scene& material(const ImageSpec& image) {
+    return shows_own(image) ? own_material(image.model_file) : material(*image.material_file);
+  }
   /// As read_material and read_environment give them; what pixels of their images tell is among
   /// what their materials have of unphysical, and was warned of. They stay, and stay as they are, as
   /// long as this does.
@@ -129,6 +140,11 @@ class Inputs {
   const ModelFacts& model(const std::filesystem::path& file);
   KnownModel look_at_model(const std::filesystem::path& file);
   Hash128 content_of_file(const std::filesystem::path& file);
+  using FilesOf = std::vector<std::filesystem::path>(const std::filesystem::path& file);
+  /// What `files_of` gives, asked of the file once for each content.
+  std::vector<std::filesystem::path> files_named(const char* kind,
+                                                 const std::filesystem::path& file,
+                                                 const Hash128& content, FilesOf* files_of);
   /// Of a model file and of the files that hold its parts.
   Hash128 content_with_parts(const std::filesystem::path& file, const Hash128& content);
   std::optional<InputBounds> image_bounds(const Image& image);
@@ -144,7 +160,8 @@ class Inputs {
   Database& database_;
   Stamps stamps_;
   Known<ModelFacts> models_;
-  Known<Scene> materials_, environments_;
+  Known<Scene> materials_, own_scenes_, environments_;
+  Known<OwnMaterials> own_materials_;
   Known<EnvironmentFacts> environment_facts_;
   std::string program_;  ///< running_program
   std::map<std::string, std::string> new_known_;

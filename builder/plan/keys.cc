@@ -151,8 +151,8 @@ struct Environment {
 struct Kind {
   Shared<std::filesystem::path> material, environment;  ///< keep the addresses that are its name
   Hash128 material_part;
-  std::uint32_t material_id = 0;
-  std::string files;  ///< canonical, of an image without effects of its camera
+  std::string material_id;  ///< ids_of_model
+  std::string files;        ///< canonical, of an image without effects of its camera
   Hash128 files_part;
   MeshExtras reads;                     ///< of a model, by the material
   Hash128 colours;                      ///< of canonical_colours
@@ -165,6 +165,12 @@ struct Kind {
   std::optional<TextForm> kept;
 };
 
+/// What tells of the model's ids in the plane material_id: its own materials' are their numbers.
+std::string ids_of_model(const Scene& material) {
+  return material.own_materials.empty() ? fmt::format("{}", material.materials.back().id)
+                                        : "of faces " + material.own_faces.hex();
+}
+
 /// Of an image's own material: of its texts.
 struct MaterialHashes {
   Hash128 part, colours;
@@ -175,8 +181,8 @@ bool is_gained(const ImageSpec& image, const Environment& environment) {
   return environment.gain_changes_program && is_gain(change_of(image));
 }
 
-/// All that the kinds of effects in an image depend on. What constants a material has is no part of them, so
-/// that images with other values of the same properties are of one kind.
+/// All that the kinds of effects in an image depend on; `material` names what of its material does. What constants a
+/// material has is no part of them, so that images with other values of the same properties are of one kind.
 std::string kind_name(const ImageSpec& image, const Environment& environment, Hash128 material) {
   return fmt::format("{} {} {}{}", material.hex(), environment.part.hex(),
                      image.camera.lens_radius_m > 0 ? "lens" : "pinhole",
@@ -308,9 +314,8 @@ Hash128 KeyMaker::State::traced_plane(std::size_t number, const PartHashes& part
                       HexText(model_part(image, reads)).text(), HexText(colours).text()});
   }
   const bool has_id = (plane.type->traits & kernels::k_plane_material_ids) != 0;
-  const fmt::format_int material_id(kind.material_id);
   return form.hash({HexText(model_part(image, plane.reads)).text(),
-                    has_id ? view_of_digits(material_id) : std::string_view()});
+                    has_id ? std::string_view(kind.material_id) : std::string_view()});
 }
 
 /// Of few different ones, however many materials and environments there are.
@@ -350,22 +355,24 @@ Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& enviro
   kind.environment = image.environment_folder;
   const Scene material = material_of(image, recipe_, inputs_);
   kind.material_part = texts_.add(canonical_material(material));
-  kind.reads = reads_of(material, static_cast<int>(material.materials.size()) - 1);
+  kind.reads = reads_of_model(material);
   kind.reads.normals = true;
-  kind.material_id = material.materials.back().id;
+  kind.material_id = ids_of_model(material);
   CanonicalText id;
   if (recipe_.outputs.find_plane("material_id") != nullptr)
     id.add("model.material.id", kind.material_id);
   kind.files = environment.files + id.text();
   kind.files_part = texts_.add(kind.files);
-  kind.program = program_hash(image, environment, kind.material_part);
+  const bool own = shows_own(image);
+  const Hash128 program_name = own ? program_name_of(material) : kind.material_part;
+  kind.program = program_hash(image, environment, program_name);
   kind.engine =
       TextForm(canonical_engine(settings, TextSet::k_reference + kind.program.hex()), {"seed"});
   kind.kept.reset();
   kind.colours = hash_text(canonical_colours(material));
   kind.plane_programs.clear();
   kind.plane_engines.clear();
-  const std::string of = kind_name(image, environment, kind.material_part);
+  const std::string of = kind_name(image, environment, program_name);
   for (const WantedPlane& plane : planes_) {
     const bool light = is_of_light(*plane.type);
     Hash128 program;

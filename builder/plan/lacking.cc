@@ -20,7 +20,7 @@ struct Needs {
 };
 
 Needs needs_of(const Scene& material) {
-  return {reads_of(material, static_cast<int>(material.materials.size()) - 1), {}};
+  return {reads_of_model(material), {}};
 }
 
 }  // namespace
@@ -33,9 +33,7 @@ std::vector<Lacking> find_lacking(const Plan& plan, Inputs& inputs) {
     const ImageSpec& spec = image.spec;
     auto known = needs.find(spec.material_file->native());
     if (known == needs.end())
-      known =
-          needs.emplace(spec.material_file->native(), needs_of(inputs.material(spec.material_file)))
-              .first;
+      known = needs.emplace(spec.material_file->native(), needs_of(inputs.material(spec))).first;
     Needs& need = known->second;
     if (need.reads == MeshExtras{} || !need.seen.insert(spec.model_name).second) continue;
     const MeshExtras has = inputs.model_has(spec.model_file);

@@ -43,6 +43,7 @@ DatasetRecord description(const Recipe& recipe, const Plan& plan) {
   for (const auto& [model, what] : plan.mended)
     record.mended_models.emplace_back(model, what.damage);
   record.shapes = plan.shapes;
+  record.own_materials = plan.own_materials;
   return record;
 }
 
@@ -216,9 +217,9 @@ void compare_concerns(std::vector<Concern> before, std::vector<Concern> after,
     behind.emplace_back("concerns: not counted by the version that wrote it");
     return;
   }
-  for (const char* name :
-       {"models_absent", "models_unlisted", "classes_unshared", "assets_unphysical",
-        "sizes_unlikely", "names_by_case", "meshes_damaged", "models_unlikely"}) {
+  for (const char* name : {"models_absent", "models_unlisted", "classes_unshared",
+                           "assets_unphysical", "sizes_unlikely", "names_by_case", "meshes_damaged",
+                           "models_unlikely", "own_materials_partial"}) {
     const std::uint64_t old_count = concern(before, name).count;
     const std::uint64_t new_count = concern(after, name).count;
     if (old_count != new_count)
@@ -243,6 +244,7 @@ void compare_datasets(const DatasetRecord& before, const DatasetRecord& after,
   add_named(behind, "licence texts", differing(licence_texts(before), licence_texts(after)));
   add_named(behind, "class ids", differing(class_ids(before), class_ids(after)));
   add_named(behind, "shapes", differing(before.shapes, after.shapes));
+  add_named(behind, "own materials", differing(before.own_materials, after.own_materials));
   add_named(behind, "mended models", differing(mended_models(before), mended_models(after)));
   compare_concerns(before.concerns, after.concerns, behind);
   std::vector<std::string> settings =

@@ -7,6 +7,7 @@
 #include "builder/plan/licence_files.h"
 #include "builder/plan/limits.h"
 #include "builder/plan/manifest_state.h"
+#include "builder/plan/own_notes.h"
 #include "builder/plan/placed_files.h"
 #include "builder/plan/unlikely_properties.h"
 #include "builder/plan/unlikely_sizes.h"
@@ -242,7 +243,7 @@ void check_ids(const Recipe& recipe, Inputs& inputs, const ImageSpec& spec) {
     if ((plane.type->traits & kernels::k_plane_material_ids) == 0) continue;
     check(plane, spec.environment_folder, "scene.materials.NAME.id", around.largest_material_id);
     check(plane, spec.material_file, "scene.materials.NAME.id",
-          largest_material_id(inputs.material(spec.material_file)));
+          largest_material_id(inputs.material(spec)));
   }
 }
 
@@ -283,7 +284,7 @@ Concern count_unphysical(const std::vector<PlannedImage>& images, Inputs& inputs
     if (image.error) continue;
     const ImageSpec& spec = image.spec;
     look(spec.material_file, [&] {
-      const std::vector<Material>& parts = inputs.material(spec.material_file).materials;
+      const std::vector<Material>& parts = inputs.material(spec).materials;
       return std::any_of(parts.begin(), parts.end(),
                          [](const Material& material) { return !material.unphysical.empty(); });
     });
@@ -399,6 +400,9 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard, Wanted
                                  inputs.model_extent(image.spec.model_file));
         if (const std::string& shape = inputs.model_shape(image.spec.model_file); !shape.empty())
           plan.shapes.try_emplace(image.spec.model_name, shape);
+        if (shows_own(image.spec))
+          plan.own_materials.try_emplace(image.spec.model_name,
+                                         names_of(inputs.own_materials(image.spec.model_file)));
         model = image.spec.model_file;
       }
       planner.plan(image, known);
@@ -425,8 +429,10 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard, Wanted
   std::vector<std::string> unlikely;
   plan.concerns = {count_unphysical(plan.images, inputs),
                    find_unlikely_sizes(dataset.recipe, plan.images, inputs, unlikely),
-                   count_names_by_case(plan.images), count_damaged(plan.images, inputs),
-                   find_unlikely_properties(dataset.recipe, plan.images, inputs, unlikely)};
+                   count_names_by_case(plan.images),
+                   count_damaged(plan.images, inputs),
+                   find_unlikely_properties(dataset.recipe, plan.images, inputs, unlikely),
+                   find_own_notes(plan.images, inputs, unlikely)};
   for (const std::string& line : unlikely)
     warn(line);
   snapshot.reset();

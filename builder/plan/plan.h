@@ -99,8 +99,10 @@ struct Plan {
   ClassIds class_ids;                         ///< of all shards' images
   std::map<std::string, MeshExtent> extents;  ///< by model file, of those that can be read
   std::map<std::string, std::string> shapes;  ///< Inputs::model_shape by model name, likewise
+  /// Names of the materials in a model's file by model name, of those that are shown in them.
+  std::map<std::string, std::vector<std::string>> own_materials;
   /// Those of all shards' images that are known before any is made: assets_unphysical,
-  /// sizes_unlikely, names_by_case, meshes_damaged, models_unlikely. Findings, but for names_by_case,
+  /// sizes_unlikely, names_by_case, meshes_damaged, models_unlikely, own_materials_partial. Findings, but for names_by_case,
   /// were warned of when they were found.
   std::vector<Concern> concerns;
   DrawCounts drawn;  ///< of all shards' images

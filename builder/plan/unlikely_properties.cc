@@ -30,7 +30,9 @@ class PropertyFinder {
     for (const auto& [name, count] : *unlikely_) {
       const MeshReportColumn& column = *mesh_report_column(name);
       const bool is_read = column.property == nullptr || reads.*column.property;
-      if (!is_read || !seen_.insert(column.name).second) continue;
+      // Of these own_notes.h tells what is not used.
+      const bool is_used = column.count == &MeshReport::unused_materials && shows_own(spec);
+      if (!is_read || is_used || !seen_.insert(column.name).second) continue;
       add_example(found_[column.name], spec.model_name);
       // Parts that are never read are no fault of the model: they are said, not counted.
       if (column.property != nullptr && !std::exchange(counted_, true))
@@ -66,8 +68,8 @@ class PropertyFinder {
   MeshExtras reads_of_image(const ImageSpec& spec) {
     const auto [at, is_new] = reads_.try_emplace(spec.material_file->native());
     if (is_new) {
-      const Scene& material = inputs_.material(spec.material_file);
-      at->second = reads_of(material, static_cast<int>(material.materials.size()) - 1);
+      const Scene& material = inputs_.material(spec);
+      at->second = reads_of_model(material);
     }
     MeshExtras reads = at->second;
     reads.normals = recipe_.normalise.normals == Normals::keep;

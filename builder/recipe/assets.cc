@@ -9,6 +9,7 @@
 #include "tracer/scene/mesh_formats.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <map>
 #include <set>
@@ -169,6 +170,14 @@ class FolderWalk {
   std::set<std::pair<dev_t, ino_t>> seen_;
 };
 
+/// Of what models' own materials are in.
+bool is_of_materials(const std::string& ending) {
+  constexpr std::array<std::string_view, 10> k_endings{".mtl", ".png", ".jpg",  ".jpeg", ".tga",
+                                                       ".bmp", ".tif", ".tiff", ".webp", ".exr"};
+  return std::any_of(k_endings.begin(), k_endings.end(),
+                     [&](std::string_view known) { return has_ending("file" + ending, known); });
+}
+
 /// What of a folder is not used, in words; empty: nothing worth a word.
 std::string unused_text(const Listing& listing, const AssetKind& kind) {
   std::vector<std::string> parts;
@@ -271,7 +280,9 @@ class Finder {
     const fs::path folder = settings_.resolve(dir);
     std::error_code error;
     const bool recursive = kind_.section == "models" && settings_.boolean("models.recursive");
-    const Listing listing = FolderWalk(kind_, recursive).list(folder, error);
+    Listing listing = FolderWalk(kind_, recursive).list(folder, error);
+    if (kind_.section == "models" && settings_.text("materials.assign") == k_own_materials)
+      std::erase_if(listing.others, [](const auto& files) { return is_of_materials(files.first); });
     const std::string unused = unused_text(listing, kind_);
     if (error) {
       settings_.complain(dir, dir_key_,
@@ -331,6 +342,8 @@ std::vector<ModelFile> find_models(Settings& settings) {
   return models;
 }
 std::vector<fs::path> find_materials(Settings& settings) {
+  const bool own = settings.text("materials.assign") == k_own_materials;
+  if (own && !settings.given("materials.dir") && !settings.given("materials.files")) return {};
   return paths_of(Finder(k_materials, settings).find());
 }
 std::vector<fs::path> find_environments(Settings& settings) {

@@ -17,7 +17,7 @@ namespace ds {
 /// finding: neither or both keys given, nothing found, no such file, one name twice, a name that a
 /// manifest cannot hold (control characters, a backslash, not UTF-8).
 std::vector<ModelFile> find_models(Settings& settings);
-/// Material files: materials.files, or the .mat files of materials.dir.
+/// Material files: materials.files, or the .mat files of materials.dir; none of models' own.
 std::vector<std::filesystem::path> find_materials(Settings& settings);
 /// Environment folders: environments.files, or the folders of environments.dir that hold an
 /// environment.scn.

@@ -34,7 +34,8 @@ std::string list_of_names(const std::vector<fs::path>& paths) {
 std::optional<std::string> own_text(const KeySpec& key, const Recipe& recipe) {
   if (key.name == "dataset.name") return to_toml(recipe.name);
   if (key.name == "models.files") return list_of_names(recipe.models);
-  if (key.name == "materials.files") return list_of_names(recipe.materials);
+  if (key.name == "materials.files" && recipe.assign_materials != Assign::own)
+    return list_of_names(recipe.materials);
   if (key.name == "environments.files") return list_of_names(recipe.environments);
   if (key.name == "classes.train" && recipe.train_classes)
     return to_toml(recipe.train_classes->filename().string());

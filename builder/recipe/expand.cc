@@ -237,6 +237,7 @@ void expand(const Recipe& recipe, const std::function<void(ImageSpec&&)>& visit)
   ImageSpec image;
   image.engine = recipe.engine;
   image.variables = ImageVariables{recipe.constants, {}, 0};
+  const Shared<std::string> own_name{std::string(k_own_materials)};
   for (const ModelFile* model : models) {
     const std::string& name = model->name;
     const ModelLabel label = splits.of_model(name);
@@ -252,7 +253,10 @@ void expand(const Recipe& recipe, const std::function<void(ImageSpec&&)>& visit)
       image.camera = recipe.cameras[view];
       if (!recipe.drawn.empty()) draw_again(image, recipe, 0);
       const std::span<const Asset> places = environment_choice.of_view(view);
-      for (const Asset& material : material_choice.of_view(view)) {
+      const Asset own{image.model_file, own_name};
+      for (const Asset& material : recipe.assign_materials == Assign::own
+                                       ? std::span(&own, 1)
+                                       : material_choice.of_view(view)) {
         image.material_file = material.path;
         image.material_name = material.name;
         for (const Asset& place : places) {
@@ -277,6 +281,7 @@ std::vector<ImageSpec> expand(const Recipe& recipe) {
 
 std::size_t image_count(const Recipe& recipe) {
   const auto each = [](Assign assign, const std::vector<fs::path>& candidates) {
+    if (assign == Assign::own) return std::size_t{1};
     return assign == Assign::all ? candidates.size() : std::min<std::size_t>(candidates.size(), 1);
   };
   return recipe.models.size() * recipe.cameras.size() *

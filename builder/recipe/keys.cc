@@ -32,6 +32,7 @@ constexpr std::string_view k_ring_sets =
     R"(camera.set = "half-dodecahedron" | "orbit" | "hemisphere")";
 constexpr std::string_view k_spiral_sets = R"(camera.set = "orbit" | "hemisphere")";
 constexpr std::string_view k_counted_sets = R"(camera.set = "orbit" | "hemisphere" | "random")";
+constexpr std::string_view k_chosen_materials = R"(materials.assign != "own")";
 constexpr std::string_view k_reinhard = R"(outputs.tone_map = "reinhard02")";
 
 using enum KeyType;
@@ -160,20 +161,21 @@ constexpr std::array k_own_keys = {
         "A class that has models in one of the two class files only, as where it was renamed in "
         "one: count it, or fail"},
 
-    KeySpec{"materials.dir", images, path, "", "", k_any, "", "",
+    KeySpec{"materials.dir", images, path, "", "", k_any, "", k_chosen_materials,
             "Folder of materials: its .mat files. Either this or materials.files must be given; "
             "with --set, the one given replaces the other"},
-    KeySpec{"materials.files", images, path_list, "", "", k_any, "", "",
+    KeySpec{"materials.files", images, path_list, "", "", k_any, "", k_chosen_materials,
             "Material files, of any name; a material's name is its file name less the ending"},
     KeySpec{"materials.assign", images, choice, "", "\"random\"", k_any,
-            R"("random" | "cycle" | "all" | "balanced")", "",
+            R"("random" | "cycle" | "all" | "balanced" | "own")", "",
             "Which material an image shows: one by chance, one view after the other, an image for "
-            "each, or by chance but each equally often in each class of each split"},
+            "each, or by chance but each equally often in each class of each split. \"own\": those "
+            "that each model's file gives its faces; see Models' own materials"},
     KeySpec{"materials.per", images, choice, "", "\"model\"", k_any, R"("model" | "view")",
             R"(materials.assign = "random" | "balanced")",
             "Whether chance chooses once for all views of a model, or anew for each view"},
 
-    KeySpec{"materials.vary", film, patterns, "", "{}", k_any, "", "",
+    KeySpec{"materials.vary", film, patterns, "", "{}", k_any, "", k_chosen_materials,
             "What is drawn of the material an image shows: by NAME.PROPERTY of its file, a "
             "distribution or a constant; see Distributions"},
 

@@ -94,8 +94,8 @@ void check_stem_names(const Settings& settings, std::string_view key,
 }
 
 void read_assignments(Settings& settings, Recipe& recipe) {
-  recipe.assign_materials =
-      chosen<Assign, 4>(settings, "materials.assign", {"random", "cycle", "all", "balanced"});
+  recipe.assign_materials = chosen<Assign, 5>(
+      settings, "materials.assign", {"random", "cycle", "all", "balanced", k_own_materials});
   recipe.materials_per = chosen<ChoosePer, 2>(settings, "materials.per", {"model", "view"});
   recipe.assign_environments =
       chosen<Assign, 4>(settings, "environments.assign", {"random", "cycle", "all", "balanced"});

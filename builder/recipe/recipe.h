@@ -25,7 +25,8 @@
 
 namespace ds {
 
-enum class Assign { random, cycle, all, balanced };
+/// `own`: materials alone: each model shows those of its file.
+enum class Assign { random, cycle, all, balanced, own };
 /// Whether a random choice is made once for a model, or for each of its views.
 enum class ChoosePer { model, view };
 
@@ -175,8 +176,10 @@ struct ImageVariables {
 struct ImageSpec {
   std::string id;  ///< "human.ply/0": the path of the picture under images/, less its ending
   Shared<std::string> model_name;  ///< "human.ply"; "chair/1/model.obj" with models.names = "path"
-  Shared<std::filesystem::path> model_file, material_file, environment_folder;
-  Shared<std::string> material_name;     ///< file name less its ending
+  Shared<std::filesystem::path> model_file;
+  Shared<std::filesystem::path> material_file;  ///< model_file where its own are shown
+  Shared<std::filesystem::path> environment_folder;
+  Shared<std::string> material_name;     ///< file name less its ending; "own" of the model's own
   Shared<std::string> environment_name;  ///< folder name
   Shared<std::string> view;
   Camera camera;
@@ -188,6 +191,11 @@ struct ImageSpec {
   std::optional<std::uint64_t> fold;  ///< below SplitSettings::folds; none in the test split
   Shared<std::map<std::string, std::string>> other_classes;  ///< class path by Recipe::hierarchies
 };
+
+/// Whether the image shows its model's own materials.
+inline bool shows_own(const ImageSpec& image) {
+  return !image.model_file->empty() && image.material_file.is_same(image.model_file);
+}
 
 /// All images, ordered by model name, then view, then (with assign = all) material, then
 /// environment. Seeds, splits and random choices hash (recipe seed, model name, view), never an
@@ -228,6 +236,8 @@ void check_drawn(const ImageSpec& image, const Recipe& recipe);
 /// that; else nothing. Throws what `fit_camera` throws.
 void fit_image(ImageSpec& image, const Recipe& recipe, const Sphere& model);
 
+/// What they call a model's own materials.
+inline constexpr const char* k_own_materials = "own";
 /// The name an image and the manifest use for a material file ("red-plastic") or an environment
 /// folder ("studio").
 std::string material_name(const std::filesystem::path& file);

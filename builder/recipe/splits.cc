@@ -41,6 +41,7 @@ std::set<std::string> things_of(const Recipe& recipe) {
     case SplitBy::material:
       for (const auto& file : recipe.materials)
         names.insert(material_name(file));
+      if (recipe.assign_materials == Assign::own) names.insert(k_own_materials);
       break;
     case SplitBy::environment:
       for (const auto& folder : recipe.environments)

@@ -7,6 +7,7 @@
 #include "tracer/device/program_text.h"
 #include "tracer/device/program_tokens.h"
 #include "tracer/kernels/layout.h"
+#include "tracer/scene/scene_reads.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
 
@@ -44,6 +45,12 @@ Scene still_life() {
   pictures::add_object(scene, pictures::quad({0, -1.2f, 0}, {2, 0, 0}, {0, 0.1f, 2}), red, 5);
   scene.objects.back().camera_invisible = true;
   pictures::add_object(scene, pictures::sphere({}, 0.45f, 12, true), red, k_model_object_id);
+  // Face by face in one of two, as a model's own materials are.
+  const int blue = pictures::add_matte(scene, {0.1f, 0.2f, 0.7f});
+  scene.materials[static_cast<std::size_t>(blue)].id = 2;
+  Object& model = scene.objects.back();
+  for (std::size_t i = 0; i < model.mesh.triangles.size(); ++i)
+    model.triangle_materials.push_back(static_cast<std::uint32_t>(i % 3 == 0 ? blue : red));
   return scene;
 }
 
@@ -72,7 +79,8 @@ std::map<std::string, Plane> trace(const Scene& scene, const Camera& camera,
 std::vector<double> right_numbers(std::string_view name, const Scene& scene, const Hit& hit) {
   const auto three = [](Vec3d v) { return std::vector<double>{v.x, v.y, v.z}; };
   const Object& object = scene.objects[static_cast<std::size_t>(hit.object)];
-  const Material& material = scene.materials[static_cast<std::size_t>(object.material)];
+  const Material& material = scene.materials[static_cast<std::size_t>(
+      material_of_triangle(object, static_cast<std::size_t>(hit.triangle)))];
   if (name == "mask" || name == "amodal_mask") return {object.id == k_model_object_id ? 1.0 : 0.0};
   if (name == "depth") return {hit.depth};
   if (name == "distance") return {hit.distance};

@@ -21,7 +21,8 @@ Vec3d between(const std::vector<Value>& corners, const std::array<std::uint32_t,
 /// Moeller and Trumbore 1997.
 void meet(const Object& object, int index, Vec3d from, Vec3d way, Hit& nearest) {
   const Mesh& mesh = object.mesh;
-  for (const auto& triangle : mesh.triangles) {
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& triangle = mesh.triangles[i];
     const Vec3d p0 = to_double(mesh.positions[triangle[0]]);
     const Vec3d e1 = to_double(mesh.positions[triangle[1]]) - p0;
     const Vec3d e2 = to_double(mesh.positions[triangle[2]]) - p0;
@@ -32,7 +33,8 @@ void meet(const Object& object, int index, Vec3d from, Vec3d way, Hit& nearest) 
     const double t = dot(e2, q) / determinant;
     const double margin = std::min({b1, b2, 1 - b1 - b2});
     if (margin < 0 || t <= 0 || (nearest.object >= 0 && t >= nearest.depth)) continue;
-    Hit hit{index, t, t * length(way), from + way * t, {}, {}, -normalized(way), 0, 0, margin};
+    Hit hit{index, t, t * length(way),     from + way * t, {}, {}, -normalized(way),
+            0,     0, static_cast<int>(i), margin};
     const Vec3d normal = normalized(cross(e1, e2));
     const double side = dot(normal, way) < 0 ? 1 : -1;
     hit.normal = hit.shading = normal * side;

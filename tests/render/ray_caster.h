@@ -19,6 +19,7 @@ struct Hit {
   Vec3d shading{};                 ///< of the corners' normals, unit, on the same side as `normal`
   Vec3d towards{};                 ///< where the ray came from, unit
   double u = 0, v = 0;             ///< of the corners'; 0 where the mesh has none
+  int triangle = -1;               ///< of the object's
   double margin = 0;  ///< least barycentric weight: below 1e-4 or so another triangle may be met
 };
 

@@ -4,6 +4,7 @@
 #include "tracer/base/error.h"
 #include "tracer/device/program_text.h"
 #include "tracer/kernels/layout.h"
+#include "tracer/scene/scene_reads.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
 
@@ -78,8 +79,8 @@ NodeCallers node_callers(const Scene& scene) {
                       std::vector<Callers>(texture_types().size())};
   std::set<int> done;
   for (const Object& object : scene.objects)
-    if (object.material >= 0)
-      call_material(scene, named("object", object.name), object.material, done, callers);
+    for (const int material : shown_materials(object))
+      call_material(scene, named("object", object.name), material, done, callers);
   return callers;
 }
 

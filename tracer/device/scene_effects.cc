@@ -3,6 +3,7 @@
 
 #include "tracer/device/texture_code.h"
 #include "tracer/kernels/layout.h"
+#include "tracer/scene/scene_reads.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
 
@@ -25,7 +26,8 @@ int input_floats(const NodeType& type) {
 std::vector<bool> used_materials(const Scene& scene) {
   std::vector<bool> used(scene.materials.size(), false);
   for (const Object& object : scene.objects)
-    if (object.material >= 0) used[static_cast<std::size_t>(object.material)] = true;
+    for (const int material : shown_materials(object))
+      used[static_cast<std::size_t>(material)] = true;
   // Children stand before their parent, so one pass from the end reaches all.
   for (std::size_t i = scene.materials.size(); i-- > 0;)
     if (used[i])
@@ -81,8 +83,10 @@ void add_materials(const Scene& scene, SceneEffects& f) {
 bool model_casts_caustics(const Scene& scene) {
   const std::vector<bool> casts = materials_with(scene, kernels::k_trait_casts_caustics);
   return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
-    return object.id == k_model_object_id && object.material >= 0 &&
-           casts[static_cast<std::size_t>(object.material)];
+    const std::vector<int> shown = shown_materials(object);
+    return object.id == k_model_object_id &&
+           std::any_of(shown.begin(), shown.end(),
+                       [&](int material) { return casts[static_cast<std::size_t>(material)]; });
   });
 }
 

@@ -7,6 +7,7 @@
 #include "tracer/device/texture_code.h"
 #include "tracer/device/ties.h"
 #include "tracer/kernels/all_nodes.h"
+#include "tracer/scene/scene_reads.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
 
@@ -55,7 +56,8 @@ TriangleRows rows_of(const Object& object, std::uint32_t light) {
   TriangleRows rows;
   Words& out = rows.words;
   out.reserve(mesh.triangles.size() * kernels::k_triangle_words);
-  for (const auto& t : mesh.triangles) {
+  for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+    const auto& t = mesh.triangles[triangle];
     const Corners corners = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
     for (const Vec3& p : corners)
       out.add(p);
@@ -66,7 +68,7 @@ TriangleRows rows_of(const Object& object, std::uint32_t light) {
       out.add(mesh.uvs.empty() ? 0.0f : mesh.uvs[i].x);
       out.add(mesh.uvs.empty() ? 0.0f : mesh.uvs[i].y);
     }
-    out.add(static_cast<std::uint32_t>(object.material));
+    out.add(static_cast<std::uint32_t>(material_of_triangle(object, triangle)));
     out.add(light);
     out.add(object.id);
     out.add(object.camera_invisible ? std::uint32_t{kernels::k_flag_camera_invisible} : 0u);
@@ -82,6 +84,7 @@ Hash128 hash_of_rows(const Object& object, std::uint32_t light) {
   stream.add(hash(object.mesh.normals));
   stream.add(hash(object.mesh.uvs));
   stream.add(hash(object.mesh.triangles));
+  stream.add(hash(object.triangle_materials));
   stream.add(fmt::format("{} {} {} {}", object.material, light, object.id,
                          static_cast<int>(object.camera_invisible)));
   return stream.hash();

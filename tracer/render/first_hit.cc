@@ -26,6 +26,7 @@ Scene model_alone(const Scene& scene) {
     if (object.id != k_model_object_id) continue;
     alone.objects.push_back(object);
     alone.objects.back().material = 0;
+    alone.objects.back().triangle_materials.clear();
   }
   return alone;
 }

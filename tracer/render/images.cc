@@ -9,6 +9,7 @@
 #include "tracer/render/image_files.h"
 #include "tracer/render/image_meaning.h"
 #include "tracer/render/strict_math.h"
+#include "tracer/scene/own_materials.h"
 
 #include <cmath>
 #include <cstdint>
@@ -20,13 +21,25 @@
 namespace ds {
 namespace {
 
+/// sRGB's, IEC 61966-2-1.
+double linear_of_srgb(double stored) {
+  return stored <= 0.04045 ? stored / 12.92 : strict_pow((stored + 0.055) / 1.055, 2.4);
+}
+
+/// How stored whole numbers are meant.
+struct Transfer {
+  float gamma = 1;
+  bool srgb = false;
+};
+
 /// Linear values of every stored 8- or 16-bit value.
-std::vector<float> gamma_table(std::size_t size, float gamma) {
+std::vector<float> linear_table(std::size_t size, const Transfer& transfer) {
   std::vector<float> table(size);
   const double greatest = static_cast<double>(size - 1);
   for (std::size_t i = 0; i < size; ++i) {
     const double stored = static_cast<double>(i) / greatest;
-    table[i] = static_cast<float>(strict_pow(stored, double{gamma}));
+    table[i] = static_cast<float>(transfer.srgb ? linear_of_srgb(stored)
+                                                : strict_pow(stored, double{transfer.gamma}));
   }
   return table;
 }
@@ -38,14 +51,14 @@ T sample(const DecodedImage& decoded, std::size_t index) {
   return value;
 }
 
-/// Stored samples as linear floats, alpha without gamma.
+/// Stored samples as linear floats, alpha as it stands.
 class LinearSamples {
  public:
-  LinearSamples(const DecodedImage& decoded, float gamma) : decoded_(decoded) {
+  LinearSamples(const DecodedImage& decoded, const Transfer& transfer) : decoded_(decoded) {
     if (decoded.type == SampleType::float32) return;
     const std::size_t levels = decoded.type == SampleType::uint16 ? 65536 : 256;
-    color_ = gamma_table(levels, gamma);
-    straight_ = gamma_table(levels, 1.0f);
+    color_ = linear_table(levels, transfer);
+    straight_ = linear_table(levels, {});
   }
 
   float color(std::size_t pixel, int channel) const { return at(pixel, channel, color_); }
@@ -109,17 +122,22 @@ Vec3 select(Vec3 color, float alpha, ImageChannel channel) {
   return {};
 }
 
+std::string name_of(const Image& image) {
+  return image.embedded < 0 ? image.file.string()
+                            : fmt::format("{}, image {}", image.file.string(), image.embedded);
+}
+
 void check_content(const Image& image, const std::string& bytes) {
   if (image.content == Hash128{}) return;
   const Hash128 found = hash_text(bytes);
   if (found != image.content)
     fail(ErrorKind::asset, "{}: changed since the scene was read: its hash was {} and is {}",
-         image.file.string(), image.content.hex(), found.hex());
+         name_of(image), image.content.hex(), found.hex());
 }
 
 /// What the image is asked for and does not have.
 void check_use(const Image& image, const DecodedImage& decoded, const ImageMeaning& meaning) {
-  const std::string name = image.file.string();
+  const std::string name = name_of(image);
   if (decoded.type != SampleType::float32 && is_named_hdr(image.file))
     fail(ErrorKind::asset,
          "{}: its name says that it holds floats, which have no gamma; found whole numbers of {} "
@@ -144,22 +162,23 @@ void check_finite(const Image& image, Vec3 color, std::size_t pixel, int width) 
   const auto columns = static_cast<std::size_t>(width);
   fail(ErrorKind::asset,
        "{}: pixel x = {}, y = {} (from the top left) must be finite, found {} {} {}",
-       image.file.string(), pixel % columns, pixel / columns, color.x, color.y, color.z);
+       name_of(image), pixel % columns, pixel / columns, color.x, color.y, color.z);
 }
 
 }  // namespace
 
 void load_image(Image& image) {
   if (image.file.empty() || !image.rgb.empty()) return;
-  const std::string name = image.file.string();
-  std::string bytes = read_image_file(image.file);
+  const std::string name = name_of(image);
+  std::string bytes =
+      image.embedded < 0 ? read_image_file(image.file) : embedded_image(image.file, image.embedded);
   check_content(image, bytes);
   const DecodedImage decoded = decode_image_bytes(bytes_of(bytes), name, Halves::widen);
   const ImageMeaning meaning = image_meaning(bytes_of(bytes), decoded, name);
   std::string().swap(bytes);
   check_use(image, decoded, meaning);
   const bool has_alpha = decoded.alpha_channel >= 0;
-  const LinearSamples samples(decoded, image.gamma);
+  const LinearSamples samples(decoded, {image.gamma, image.srgb});
   const std::size_t pixels =
       static_cast<std::size_t>(meaning.width) * static_cast<std::size_t>(meaning.height);
   std::vector<float> rgb(pixels * 3);

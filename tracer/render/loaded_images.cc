@@ -14,6 +14,8 @@ std::string use_of(const Image& image) {
   text.add("file", image.file.string());
   text.add("content", image.content.hex());
   text.add("gamma", image.gamma);
+  text.add("srgb", image.srgb);
+  text.add("embedded", image.embedded);
   text.add("gain", image.gain);
   text.add("use", static_cast<int>(image.use));
   text.add("channel", static_cast<int>(image.channel));

@@ -5,6 +5,7 @@
 #include "tracer/kernels/all_nodes.h"
 #include "tracer/kernels/lists.h"
 #include "tracer/kernels/prepared.h"
+#include "tracer/scene/scene_reads.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/type_tables.h"
 
@@ -137,10 +138,10 @@ class PhotonTracer {
     const std::vector<std::uint32_t> first = first_triangles(scene);
     for (std::size_t o = 0; o < scene.objects.size(); ++o) {
       const Object& object = scene.objects[o];
-      if (object.id != k_model_object_id || object.material < 0 ||
-          !substances_[static_cast<std::size_t>(object.material)].casts)
-        continue;
+      if (object.id != k_model_object_id) continue;
       for (std::size_t i = 0; i < object.mesh.triangles.size(); ++i) {
+        const int material = material_of_triangle(object, i);
+        if (material < 0 || !substances_[static_cast<std::size_t>(material)].casts) continue;
         const auto number = static_cast<natural>(first[o] + i);
         sum += area(number);
         casters_.push_back(number);

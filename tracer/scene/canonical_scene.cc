@@ -76,6 +76,10 @@ class Writer {
     for (const Material& material : scene_.materials)
       write(material);
   }
+  /// Which face has which of a model's own materials.
+  void own() {
+    if (!scene_.own_materials.empty()) text_.add("faces", scene_.own_faces.hex());
+  }
   void objects() {
     for (const Object& object : scene_.objects)
       write(object);
@@ -121,7 +125,10 @@ class Writer {
     const Image& image = scene_.images[static_cast<std::size_t>(index)];
     if (!image.made_from.empty()) add("image.made_from", std::string_view(image.made_from));
     add("image.content", std::string_view(image.content.hex()));
-    add("image.gamma", image.gamma);
+    if (image.srgb)
+      add("image.transfer", "srgb");
+    else
+      add("image.gamma", image.gamma);
     add("image.gain", image.gain);
     add("image.wrap", word(image.wrap));
     add("image.filter", word(image.filter));
@@ -192,6 +199,7 @@ std::string canonical_material(const Scene& material) {
   Writer writer(material);
   writer.textures();
   writer.materials();
+  writer.own();
   return writer.text();
 }
 

@@ -2,6 +2,9 @@
 #include "tracer/base/error.h"
 #include "tracer/scene/sdl.h"
 
+#include <algorithm>
+#include <cstdint>
+
 namespace ds {
 namespace {
 
@@ -35,10 +38,31 @@ Material moved(Material material, const Offsets& by) {
   return material;
 }
 
+/// Which material each triangle has; empty where all have the same, which `same` then is.
+std::vector<std::uint32_t> own_of_triangles(const Scene& material, const Mesh& mesh, int first,
+                                            int& same) {
+  const std::size_t count = mesh.triangles.size();
+  std::vector<std::uint32_t> found(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t number = mesh.materials.empty() ? 0 : mesh.materials[i];
+    const int at = number < material.own_materials.size() ? material.own_materials[number] : -1;
+    DS_ASSERT(at >= 0);
+    found[i] = static_cast<std::uint32_t>(first + at);
+  }
+  if (std::all_of(found.begin(), found.end(), [&](auto at) { return at == found.front(); })) {
+    if (count > 0) same = static_cast<int>(found.front());
+    found.clear();
+  }
+  return found;
+}
+
 }  // namespace
 
 Scene compose(const Scene& environment, const Scene& material, Mesh mesh) {
   DS_ASSERT(!material.materials.empty());
+  const bool own = !material.own_materials.empty();
+  if (own && materials_hash(mesh) != material.own_faces)
+    fail(ErrorKind::asset, "the model's materials changed while the dataset was built");
   Scene scene = environment;
   const Offsets offsets{static_cast<int>(scene.images.size()),
                         static_cast<int>(scene.textures.size()),
@@ -51,8 +75,10 @@ Scene compose(const Scene& environment, const Scene& material, Mesh mesh) {
 
   Object model;
   model.name = "model";
-  model.mesh = std::move(mesh);
   model.material = static_cast<int>(scene.materials.size()) - 1;
+  if (own)
+    model.triangle_materials = own_of_triangles(material, mesh, offsets.material, model.material);
+  model.mesh = std::move(mesh);
   model.id = k_model_object_id;
   scene.objects.push_back(std::move(model));
   return scene;

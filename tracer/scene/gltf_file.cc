@@ -138,6 +138,14 @@ fs::path checked(const std::string& uri, const std::string& name) {
   return path;
 }
 
+}  // namespace
+
+fs::path gltf_file_of_uri(const std::string& uri, const std::string& name) {
+  return fs::path(name).parent_path() / checked(uri, name);
+}
+
+namespace {
+
 struct BufferFile {
   fs::path file;
   std::string key;  ///< as tinygltf asks for it
@@ -172,7 +180,7 @@ std::vector<BufferFile> buffer_files(const nlohmann::json& root, const std::stri
     if (text.starts_with("data:"))
       file.data = base64_data(text, name);
     else
-      file.file = fs::path(name).parent_path() / checked(text, name);
+      file.file = gltf_file_of_uri(text, name);
     files.push_back(std::move(file));
   }
   return files;
@@ -192,8 +200,10 @@ bool take_loaded(std::vector<unsigned char>* out, std::string*, const std::strin
   out->assign(bytes.begin(), bytes.end());
   return true;
 }
-bool no_image(tinygltf::Image*, const int, std::string*, std::string*, int, int,
-              const unsigned char*, int, void*) {
+/// Those of data URIs, as they are encoded; where others lie is known without this.
+bool keep_image(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
+                const unsigned char* bytes, int size, void*) {
+  if (image->bufferView < 0 && size > 0) image->image.assign(bytes, bytes + size);
   return true;
 }
 
@@ -237,7 +247,7 @@ GltfFile load_gltf(std::string_view bytes, const std::string& name) {
     files = loaded(buffer_files(root, name), name);
   }
   tinygltf::TinyGLTF loader;
-  loader.SetImageLoader(no_image, nullptr);
+  loader.SetImageLoader(keep_image, nullptr);
   loader.SetFsCallbacks({file_is_loaded, same_path, take_loaded, nullptr, &files});
   GltfFile result;
   std::string error, warning;

@@ -22,7 +22,7 @@
 // them; a node that mirrors turns its faces over. Attributes may be of any component type, sparse, and without a buffer.
 // A buffer is in the file, in a data URI, or in a file beside this one or below its folder.
 //
-// What is left out is counted: materials, points and lines, joints and morph targets (such a mesh is shown as it is
+// Primitives' materials are gltf_materials.cc's. What is left out is counted: points and lines, joints and morph targets (such a mesh is shown as it is
 // stored). Indices that lead nowhere lose their faces, as in other formats.
 
 namespace ds {
@@ -112,6 +112,10 @@ class GltfReader {
     most_ = k_free_vertices + k_vertices_a_byte * size;
   }
 
+  const GltfFile& file() const { return file_; }
+  /// Of the file's materials, those that faces have, in the order of their numbers.
+  const std::vector<int>& used_materials() const { return used_materials_; }
+
   Polygons read() {
     seen_.resize(model_.nodes.size());
     for (const int root : roots())
@@ -120,8 +124,10 @@ class GltfReader {
       for (std::size_t i = 0; i < model_.meshes.size(); ++i)
         add_mesh(static_cast<int>(i), k_identity);
     if (out_.face_ends.empty()) fail(ErrorKind::asset, "{}: its scene has no faces", name_);
-    out_.unused.materials = static_cast<std::uint64_t>(
-        std::count(material_is_used_.begin(), material_is_used_.end(), true));
+    out_.unused.materials = used_materials_.size();
+    for (const int material : used_materials_)
+      out_.material_names.push_back(model_.materials[static_cast<std::size_t>(material)].name);
+    if (used_materials_.empty()) out_.face_materials.clear();
     out_.missing.colors = fill_missing_colors(out_.colors);
     out_.trailing_bytes = file_.trailing_bytes;
     return std::move(out_);
@@ -340,7 +346,7 @@ class GltfReader {
     }
     const auto position = primitive.attributes.find("POSITION");
     if (position == primitive.attributes.end()) return;  // as the format has it
-    note_material(primitive.material);
+    const std::uint32_t material = material_number(primitive.material);
     const Elements& places = elements(position->second);
     if (places.width != 3)
       fail(ErrorKind::asset, "{}: POSITION has {} numbers a place, not 3", name_, places.width);
@@ -381,6 +387,7 @@ class GltfReader {
         face(i, i + 1, i + 2);
     if (!strip && !fan && count % 3 != 0)
       out_.face_ends.push_back(out_.corners.size());  // a face of too few corners
+    out_.face_materials.resize(out_.face_ends.size(), material);
   }
 
   void spend(std::size_t count) {
@@ -391,11 +398,14 @@ class GltfReader {
            name_, most_);
   }
 
-  void note_material(int material) {
-    if (material < 0) return;
+  /// By the order in which primitives name them, from 1; 0 for none.
+  std::uint32_t material_number(int material) {
+    if (material < 0) return 0;
     at(model_.materials, material, "a material");
-    material_is_used_.resize(model_.materials.size());
-    material_is_used_[static_cast<std::size_t>(material)] = true;
+    const auto [number, is_new] = material_numbers_.try_emplace(
+        material, static_cast<std::uint32_t>(used_materials_.size() + 1));
+    if (is_new) used_materials_.push_back(material);
+    return number->second;
   }
 
   std::uint32_t add_vertex(std::size_t i, const Elements& places, const Elements* normals,
@@ -442,7 +452,9 @@ class GltfReader {
   const tinygltf::Model& model_;
   Polygons out_;
   std::map<int, Elements> elements_;  ///< by accessor
-  std::vector<bool> seen_, material_is_used_;
+  std::vector<bool> seen_;
+  std::map<int, std::uint32_t> material_numbers_;
+  std::vector<int> used_materials_;
   std::size_t spent_ = 0, most_ = 0;
 };
 
@@ -454,15 +466,30 @@ Polygons read_gltf(std::string_view bytes, const std::string& name) {
   return GltfReader(bytes, name).read();
 }
 
+OwnMaterials read_materials(std::string_view bytes, const std::string& name) {
+  GltfReader reader(bytes, name);
+  reader.read();
+  return gltf_materials(reader.file(), reader.used_materials(), name);
+}
+
+std::string read_image(std::string_view bytes, const std::string& name, int number) {
+  const GltfFile file = load_gltf(bytes, name);
+  return std::string(gltf_image(file.model, number, name));
+}
+
 }  // namespace
 
 extern const MeshFormat gltf_format;
 const MeshFormat gltf_format{
     "glTF",
     ".gltf .glb",
-    "normals, uvs (TEXCOORD_0) and colours (COLOR_0) of vertices; nodes' transforms are applied",
+    "normals, uvs (TEXCOORD_0) and colours (COLOR_0) of vertices, materials; nodes' transforms are "
+    "applied",
     matches_gltf,
     read_gltf,
-    gltf_buffer_files};
+    gltf_buffer_files,
+    read_materials,
+    nullptr,
+    read_image};
 
 }  // namespace ds

@@ -12,10 +12,10 @@ set_source_files_properties(mesh_formats.cc PROPERTIES COMPILE_DEFINITIONS "DS_M
 find_path(TINYGLTF_INCLUDE tiny_gltf.h REQUIRED)
 set(tinygltf_definitions TINYGLTF_NO_FS TINYGLTF_NO_STB_IMAGE TINYGLTF_NO_STB_IMAGE_WRITE TINYGLTF_NO_EXTERNAL_IMAGE
   TINYGLTF_NO_INCLUDE_JSON)
-set_source_files_properties(gltf_file.cc gltf_reader.cc PROPERTIES COMPILE_DEFINITIONS "${tinygltf_definitions}"
+set_source_files_properties(gltf_file.cc gltf_materials.cc gltf_reader.cc PROPERTIES COMPILE_DEFINITIONS "${tinygltf_definitions}"
   SKIP_UNITY_BUILD_INCLUSION ON)
 
 ds_library(ds_mesh
-  SOURCES gltf_file.cc mesh_corners.cc mesh_formats.cc mesh_hash.cc mesh_inside.cc mesh_mend.cc mesh_normalise.cc mesh_normals.cc mesh_outward.cc
-    mesh_read.cc mesh_shape.cc mesh_text.cc mesh_topology.cc mesh_triangulate.cc ply_header.cc ply_layout.cc ${mesh_readers}
+  SOURCES gltf_file.cc gltf_materials.cc mesh_corners.cc mesh_formats.cc mesh_hash.cc mesh_inside.cc mesh_mend.cc mesh_normalise.cc mesh_normals.cc mesh_outward.cc
+    mesh_read.cc mesh_shape.cc mesh_text.cc mesh_topology.cc mesh_triangulate.cc mtl_reader.cc own_materials.cc ply_header.cc ply_layout.cc sdl_math.cc ${mesh_readers}
   LIBS ds_base nlohmann_json::nlohmann_json)

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -27,6 +28,9 @@ struct BasicMesh {
   std::vector<Vec2> uvs;
   std::vector<MeshColor> colors;
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  /// Which of its file's materials each triangle has, by number from 1 in the order in which faces first name
+  /// them; 0: none. Empty where none has one; else as long as `triangles`.
+  std::vector<std::uint32_t> materials{};
 };
 
 /// In the world, as it is traced.
@@ -167,7 +171,7 @@ inline constexpr std::array k_mesh_report_columns{
     MeshReportColumn{
         "unused_materials", &MeshReport::unused_materials, nullptr,
         "have materials in their files, which are not read: what the recipe gives them "
-        "is shown"},
+        "is shown, and materials.assign = \"own\" would show theirs"},
     MeshReportColumn{"unused_attributes", &MeshReport::unused_attributes, nullptr,
                      "are attributes of STL facets, into which programs write colours in ways that "
                      "contradict each other, and are not read",
@@ -282,6 +286,12 @@ Mesh normalise(const FileMesh& mesh, const NormaliseOptions& options);
 Hash128 geometry_hash(const Mesh& mesh, MeshExtras extras = {true, true, true});
 /// The same hash where all positions are floats' values.
 Hash128 geometry_hash(const FileMesh& mesh, MeshExtras extras = {true, true, true});
+
+/// Of the numbers of its triangles' materials, which no other hash counts; zero where none has one.
+template <typename Position>
+Hash128 materials_hash(const BasicMesh<Position>& mesh) {
+  return mesh.materials.empty() ? Hash128{} : hash_bytes(std::as_bytes(std::span(mesh.materials)));
+}
 
 /// The hash of a mesh's places and triangles, and those of the rest: zero where it has none.
 struct MeshHashes {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tracer/scene/mesh_polygons.h"
+#include "tracer/scene/own_materials.h"
 
 #include <filesystem>
 #include <span>
@@ -26,6 +27,14 @@ struct MeshFormat {
   /// `read` does.
   std::vector<std::filesystem::path> (*parts)(std::string_view bytes,
                                               const std::string& name) = nullptr;
+  /// What the faces' materials are (own_materials.h), whose numbers `read` counts likewise, and the files beside it that
+  /// these are in. Null for kinds that have none, and for those that have all in one file.
+  OwnMaterials (*materials)(std::string_view bytes, const std::string& name) = nullptr;
+  std::vector<std::filesystem::path> (*material_files)(std::string_view bytes,
+                                                       const std::string& name) = nullptr;
+  /// The bytes of image `number` of those that its materials show and the file holds.
+  std::string (*embedded_image)(std::string_view bytes, const std::string& name,
+                                int number) = nullptr;
 };
 
 /// All, in the order in which they are asked whether a file is theirs.

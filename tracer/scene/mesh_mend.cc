@@ -90,10 +90,10 @@ bool floats_hold(const Polygons& polygons, const std::vector<char>& usable) {
   return side >= k_least_side && farthest <= k_farthest_in_sides * side;
 }
 
-/// The triangles of all faces whose corners exist and are usable.
-std::vector<Triangle> triangulate_usable(const Polygons& polygons, const std::vector<char>& usable,
-                                         const std::string& name, MeshReport& report) {
-  std::vector<Triangle> triangles;
+/// The triangles of all faces whose corners exist and are usable, with their faces' materials.
+void triangulate_usable(const Polygons& polygons, const std::vector<char>& usable,
+                        const std::string& name, FileMesh& mesh, MeshReport& report) {
+  std::vector<Triangle>& triangles = mesh.triangles;
   triangles.reserve(report.triangles);
   Triangulator triangulator;
   for (std::size_t i = 0; i < polygons.face_ends.size(); ++i) {
@@ -108,8 +108,9 @@ std::vector<Triangle> triangulate_usable(const Polygons& polygons, const std::ve
            "what "
            "wrote it cut its faces",
            name, i, face.size());
+    if (!polygons.face_materials.empty())
+      mesh.materials.resize(triangles.size(), polygons.face_materials[i]);
   }
-  return triangles;
 }
 
 /// No area within the rounding of double arithmetic on the file's coordinates: corners that coincide or
@@ -122,34 +123,46 @@ bool has_no_area(Vec3d a, Vec3d b, Vec3d c) {
   return !(length(cross(ab, ac)) > k_relative * longest);
 }
 
+/// Removes what is not to stay, with its material; returns how many.
+template <typename Stays>
+std::size_t keep_triangles(FileMesh& mesh, const Stays& stays) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (!stays(i)) continue;
+    mesh.triangles[kept] = mesh.triangles[i];
+    if (!mesh.materials.empty()) mesh.materials[kept] = mesh.materials[i];
+    ++kept;
+  }
+  const std::size_t removed = mesh.triangles.size() - kept;
+  mesh.triangles.resize(kept);
+  if (!mesh.materials.empty()) mesh.materials.resize(kept);
+  return removed;
+}
+
 /// Returns those removed whose corners are three places: on one line, where they may join others.
-std::vector<Triangle> remove_zero_area(std::vector<Triangle>& triangles,
-                                       const std::vector<Vec3d>& positions, MeshReport& report) {
+std::vector<Triangle> remove_zero_area(FileMesh& mesh, MeshReport& report) {
   std::vector<Triangle> flat;
-  report.zero_area = std::erase_if(triangles, [&](const Triangle& t) {
-    const Vec3d a = positions[t[0]], b = positions[t[1]], c = positions[t[2]];
-    if (!has_no_area(a, b, c)) return false;
+  report.zero_area = keep_triangles(mesh, [&](std::size_t i) {
+    const Triangle t = mesh.triangles[i];
+    const Vec3d a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
+    if (!has_no_area(a, b, c)) return true;
     if (a != b && b != c && c != a) flat.push_back(t);
-    return true;
+    return false;
   });
   return flat;
 }
 
-void remove_duplicates(std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& welded,
+void remove_duplicates(FileMesh& mesh, const std::vector<std::uint32_t>& welded,
                        MeshReport& report) {
   std::vector<Triangle> keys;
-  keys.reserve(triangles.size());
-  for (const Triangle& t : triangles) {
+  keys.reserve(mesh.triangles.size());
+  for (const Triangle& t : mesh.triangles) {
     Triangle key{welded[t[0]], welded[t[1]], welded[t[2]]};
     std::sort(key.begin(), key.end());
     keys.push_back(key);
   }
   const std::vector<std::uint32_t> first = first_equal<3>(keys);
-  std::size_t kept = 0;
-  for (std::uint32_t i = 0; i < triangles.size(); ++i)
-    if (first[i] == i) triangles[kept++] = triangles[i];
-  report.duplicate_faces = triangles.size() - kept;
-  triangles.resize(kept);
+  report.duplicate_faces = keep_triangles(mesh, [&](std::size_t i) { return first[i] == i; });
 }
 
 /// Normals to unit length, and zero for what is not finite.
@@ -272,7 +285,7 @@ Model mend(Polygons polygons, const std::string& name, Winding winding) {
     for (Vec3d& p : polygons.positions)
       p = to_double(to_mesh_floats(p));
   FileMesh& mesh = model.mesh;
-  mesh.triangles = triangulate_usable(polygons, usable, name, report);
+  triangulate_usable(polygons, usable, name, mesh, report);
   mesh.positions = std::move(polygons.positions);
   mesh.normals = std::move(polygons.normals);
   mesh.uvs = std::move(polygons.uvs);
@@ -283,9 +296,9 @@ Model mend(Polygons polygons, const std::string& name, Winding winding) {
   if (std::all_of(mesh.colors.begin(), mesh.colors.end(),
                   [&](const MeshColor& c) { return c == k_white; }))
     mesh.colors.clear();
-  const std::vector<Triangle> flat = remove_zero_area(mesh.triangles, mesh.positions, report);
+  const std::vector<Triangle> flat = remove_zero_area(mesh, report);
   const std::vector<std::uint32_t> welded = weld(mesh.positions);
-  remove_duplicates(mesh.triangles, welded, report);
+  remove_duplicates(mesh, welded, report);
   if (mesh.triangles.empty())
     fail(
         ErrorKind::asset,
@@ -319,6 +332,7 @@ Mesh in_floats(FileMesh mesh) {
   rounded.uvs = std::move(mesh.uvs);
   rounded.colors = std::move(mesh.colors);
   rounded.triangles = std::move(mesh.triangles);
+  rounded.materials = std::move(mesh.materials);
   return rounded;
 }
 

@@ -211,6 +211,7 @@ Mesh with_corner_normals(const FileMesh& source, const std::vector<Vec3>& placed
     }
     mesh.triangles[c / 3][c % 3] = vertex_of[first[c]];
   }
+  mesh.materials = source.materials;
   return mesh;
 }
 
@@ -227,6 +228,7 @@ Mesh with_stored_normals(const FileMesh& source, std::vector<Vec3> placed,
   mesh.uvs = source.uvs;
   mesh.colors = source.colors;
   mesh.triangles = source.triangles;
+  mesh.materials = source.materials;
   return mesh;
 }
 

@@ -45,6 +45,9 @@ struct Polygons {
   std::vector<Vec2> corner_uvs;        ///< empty or as long as `corners`; goes before `uvs`
   std::vector<Vec3> corner_normals;    ///< likewise before `normals`
   std::vector<MeshColor> face_colors;  ///< empty or one a face; where there are no `colors`
+  /// Empty or one a face: from 1, in the order in which faces first name them; 0: none.
+  std::vector<std::uint32_t> face_materials{};
+  std::vector<std::string> material_names{};  ///< of these, from number 1 on
   DarkColors dark_colors, dark_face_colors;
   UnusedParts unused;
   MissingParts missing;

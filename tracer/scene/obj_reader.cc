@@ -3,6 +3,7 @@
 #include "tracer/base/file_names.h"
 #include "tracer/scene/mesh_formats.h"
 #include "tracer/scene/mesh_text.h"
+#include "tracer/scene/mtl_reader.h"
 
 #include <algorithm>
 #include <array>
@@ -10,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -29,8 +31,8 @@
 // or of a kind that says nothing of a surface's shape: names of objects and groups, smoothing groups,
 // and so on (k_without_shape). "#" begins a comment; "\" at a line's end joins it with the next, but in
 // comments and names. W, the weight in curves and of 3D textures, is not used. A corner's VT, VN and
-// colour go where those of a PLY file's go. What is left out is counted: materials, lines, points,
-// curves, free-form surfaces, and lines of no known kind. An index may lead to a vertex that follows. No
+// colour go where those of a PLY file's go. "usemtl" NAME gives the faces behind it a material, of a file that a line
+// "mtllib" FILE... names (mtl_reader.h). What is left out is counted: lines, points, curves, free-form surfaces, and lines of no known kind. An index may lead to a vertex that follows. No
 // mark ends a file: what is cut off between two lines is not missed.
 
 namespace ds {
@@ -82,12 +84,15 @@ class ObjReader {
   ObjReader(std::string_view bytes, const std::string& name)
       : name_(name), cursor_(name, bytes, 1, '#', '\\') {}
 
+  /// Values of mtllib lines.
+  const std::vector<std::string>& libraries() const { return libraries_; }
+
   Polygons read() {
     while (cursor_.next_line())
       read_line(cursor_.word());
     refuse_indices_from_0();
     out_.counts_from_1 = true;
-    out_.unused.materials = materials_.size();
+    out_.unused.materials = named_.size();
     out_.missing.colors = fill_missing_colors(out_.colors);
     out_.corner_uvs = values_of(corner_uvs_, uvs_, {}, out_.missing.uvs);
     std::uint64_t flat = 0;  // counted with the normals of no length, which they are
@@ -153,6 +158,20 @@ class ObjReader {
     while (!cursor_.line_done())
       read_corner(cursor_.word());
     out_.face_ends.push_back(out_.corners.size());
+    add_material();
+  }
+
+  /// Numbers follow from faces, as a usemtl without any names nothing that is shown.
+  void add_material() {
+    if (material_.empty()) {
+      if (!out_.face_materials.empty()) out_.face_materials.push_back(0);
+      return;
+    }
+    const auto [at, is_new] = materials_.try_emplace(
+        material_, static_cast<std::uint32_t>(out_.material_names.size() + 1));
+    if (is_new) out_.material_names.push_back(material_);
+    out_.face_materials.resize(out_.face_ends.size() - 1, 0);
+    out_.face_materials.push_back(at->second);
   }
 
   void read_corner(std::string_view word) {
@@ -200,7 +219,9 @@ class ObjReader {
 
   void read_name(std::string_view word) {
     const std::string_view name = cursor_.rest_of_line();
-    if (word == "usemtl" && !name.empty()) materials_.emplace(name);
+    if (word == "usemtl") material_ = name;
+    if (word == "usemtl" && !name.empty()) named_.emplace(name);
+    if (word == "mtllib" && !name.empty()) libraries_.emplace_back(name);
   }
 
   void pass_over(std::string_view word) {
@@ -231,7 +252,10 @@ class ObjReader {
   std::vector<Vec2> uvs_;
   std::vector<Vec3> normals_;
   std::vector<std::uint32_t> corner_uvs_, corner_normals_;  ///< as long as out_.corners
-  std::set<std::string, std::less<>> materials_;
+  std::map<std::string, std::uint32_t, std::less<>> materials_;
+  std::string material_;         ///< of the faces that follow
+  std::set<std::string> named_;  ///< by lines usemtl, whether a face follows or not
+  std::vector<std::string> libraries_;
   std::int64_t least_ = std::numeric_limits<std::int64_t>::max(),
                most_ = -1;  ///< vertices' indices
 };
@@ -250,11 +274,29 @@ Polygons read_obj(std::string_view bytes, const std::string& name) {
   return ObjReader(bytes, name).read();
 }
 
+std::vector<std::filesystem::path> obj_libraries(std::string_view bytes, const std::string& name) {
+  ObjReader reader(bytes, name);
+  reader.read();
+  return mtl_files(reader.libraries(), name);
+}
+
+OwnMaterials obj_materials(std::string_view bytes, const std::string& name) {
+  ObjReader reader(bytes, name);
+  const Polygons polygons = reader.read();
+  return mtl_materials(mtl_files(reader.libraries(), name), polygons.material_names);
+}
+
 }  // namespace
 
 extern const MeshFormat obj_format;
-const MeshFormat obj_format{"OBJ", ".obj",
-                            "uvs and normals of corners, colours of vertices behind their places",
-                            is_obj, read_obj};
+const MeshFormat obj_format{"OBJ",
+                            ".obj",
+                            "uvs and normals of corners, colours of vertices behind their places; "
+                            "materials (usemtl) of .mtl files",
+                            is_obj,
+                            read_obj,
+                            nullptr,
+                            obj_materials,
+                            obj_libraries};
 
 }  // namespace ds

@@ -28,8 +28,12 @@ enum class ImageChannel { rgb, red, green, blue, alpha, mean, colored_mean };
 /// An image file and how it is read. Pixels are loaded by tracer/render; row 0 is the top.
 struct Image {
   std::filesystem::path file;
+  /// Its number among the images that a model's file holds (own_materials.h); -1: the file is the image.
+  int embedded = -1;
   /// linear = stored^gamma; 1 for HDR files (the reader refuses another value there).
   float gamma = 2.2f;
+  /// Whole numbers are sRGB's (IEC 61966-2-1), whatever the gamma.
+  bool srgb = false;
   float gain = 1.0f;
   ImageWrap wrap = ImageWrap::repeat;
   ImageFilter filter = ImageFilter::linear;
@@ -114,6 +118,8 @@ struct Object {
   Mesh mesh;  ///< in world space: transformations are applied by the reader; flat-shaded where it
               ///< has no normals
   int material = -1;
+  /// Of each triangle, where they differ; else empty.
+  std::vector<std::uint32_t> triangle_materials{};
   std::uint32_t id = 0;  ///< as in the file, 0 where it has none; never k_model_object_id there
   bool camera_invisible = false;
 };
@@ -134,6 +140,10 @@ struct Scene {
   std::vector<Object> objects;
   std::vector<Light> lights;
   ToneMap tone_map;
+  /// Of a model's own materials (own_materials.h): which of `materials` each number in Mesh::materials means, -1
+  /// for one that no triangle has; and materials_hash of the mesh that these are of.
+  std::vector<int> own_materials{};
+  Hash128 own_faces{};
   /// What was wrong with its objects' files, a line each; no part of a picture.
   std::vector<std::string> mended_meshes{};
   bool lost_faces = false;  ///< one of them did when it was read

@@ -64,6 +64,14 @@ void check_object(const Scene& scene, const Object& object) {
   if (!is_index(object.material, scene.materials.size()))
     fail(ErrorKind::asset, "object {}: its material must be one of {}, got {}", object.name,
          scene.materials.size(), object.material);
+  const auto& own = object.triangle_materials;
+  if (!own.empty() && own.size() != object.mesh.triangles.size())
+    fail(ErrorKind::asset, "object {}: wanted a material for each of {} triangles, got {}",
+         object.name, object.mesh.triangles.size(), own.size());
+  for (const std::uint32_t material : own)
+    if (material >= scene.materials.size())
+      fail(ErrorKind::asset, "object {}: a triangle's material must be one of {}, got {}",
+           object.name, scene.materials.size(), material);
 }
 
 /// A matrix is kept in double and reaches the tracer in float.

@@ -3,6 +3,7 @@
 
 #include "tracer/scene/type_tables.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace ds {
@@ -48,6 +49,22 @@ MeshExtras reads_of(const Scene& scene, int material) {
   Search search(scene);
   search.material(material);
   return search.found();
+}
+
+MeshExtras reads_of_model(const Scene& material) {
+  Search search(material);
+  const int last = static_cast<int>(material.materials.size()) - 1;
+  for (int i = material.own_materials.empty() ? last : 0; i <= last; ++i)
+    search.material(i);
+  return search.found();
+}
+
+std::vector<int> shown_materials(const Object& object) {
+  std::vector<int> shown(object.triangle_materials.begin(), object.triangle_materials.end());
+  if (shown.empty() && object.material >= 0) shown.push_back(object.material);
+  std::sort(shown.begin(), shown.end());
+  shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
+  return shown;
 }
 
 }  // namespace ds

@@ -35,7 +35,8 @@ Scene read_environment(const std::filesystem::path& folder,
 
 /// The environment with one more object: `mesh` in `material`'s last material, object id
 /// `k_model_object_id`. Indices of the material's scene are moved behind the environment's. The
-/// environment's own objects have other ids.
+/// environment's own objects have other ids. Where `material` is a model's own (own_scene), each
+/// triangle is in that of its number; throws Error(asset) where these are of another mesh.
 Scene compose(const Scene& environment, const Scene& material, Mesh mesh);
 inline constexpr std::uint32_t k_model_object_id = 1;
 

@@ -77,6 +77,25 @@ TEST(Expand, FillsInEachImage) {
   EXPECT_EQ(image.split, "");
 }
 
+TEST(Expand, OfModelsOwnMaterialsEachHasItsOwn) {
+  Recipe recipe = small_recipe();
+  recipe.assign_materials = Assign::own;
+  for (const bool with_files : {true, false}) {
+    if (!with_files) recipe.materials.clear();
+    const std::vector<ImageSpec> images = expand(recipe);
+    ASSERT_EQ(images.size(), 6U);
+    EXPECT_EQ(image_count(recipe), 6U);
+    for (const ImageSpec& image : images) {
+      EXPECT_TRUE(shows_own(image));
+      EXPECT_EQ(image.material_file, image.model_file);
+      EXPECT_EQ(image.material_name, "own");
+    }
+  }
+  for (const ImageSpec& image : expand(small_recipe()))
+    EXPECT_FALSE(shows_own(image));
+  EXPECT_FALSE(shows_own(ImageSpec{}));
+}
+
 TEST(Expand, IsPure) {
   EXPECT_EQ(by_id(small_recipe()), by_id(small_recipe()));
 }
