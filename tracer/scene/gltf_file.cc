@@ -13,6 +13,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <system_error>
 
 namespace ds {
 namespace {
@@ -211,6 +212,10 @@ bool keep_image(tinygltf::Image* image, const int, std::string*, std::string*, i
 LoadedFiles loaded(const std::vector<BufferFile>& files, const std::string& name) {
   LoadedFiles all;
   for (const BufferFile& file : files) {
+    std::error_code error;
+    if (!file.data && !fs::is_regular_file(file.file, error))
+      fail(ErrorKind::asset, "{}: wanted the file of a buffer, {}, found none", name,
+           printable(file.file.filename().string()));
     std::string bytes = file.data ? *file.data : read_text_file(file.file);
     if (bytes.size() < file.bytes)
       fail(ErrorKind::asset, "{}: cut off: {} promises {} bytes, found {}",
