@@ -8,5 +8,5 @@ set_target_properties(dsbuild_images PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTO
 ds_library(ds_images
   SOURCES camera_effects.cc develop.cc exr_header.cc image_claims.cc image_files.cc image_meaning.cc images.cc loaded_images.cc plane_file.cc png_chunks.cc strict_math.cc tiff_directory.cc
   LIBS ds_base
-  PRIVATE_LIBS ${CMAKE_DL_LIBS})
+  PRIVATE_LIBS ds_mesh ${CMAKE_DL_LIBS})
 add_dependencies(ds_images dsbuild_images)
