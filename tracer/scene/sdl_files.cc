@@ -32,11 +32,14 @@ Scene read_material(const std::filesystem::path& file, const ContentOf& content_
   mend_section_names(reader);
   read_textures(reader);
   read_materials(reader);
-  report_unused(reader, std::span(k_scene_kinds).first(2), "a material file");
+  const std::span kinds = std::span(k_scene_kinds).first(2);
+  report_unused(reader, kinds, "a material file");
+  report_slips(reader, kinds);
   if (diagnostics.empty() && reader.scene.materials.empty())
     diagnostics.add({file.string()}, "wanted a material, found no scene.materials");
   diagnostics.throw_if_any();
   warn_of_repeats(reader.properties);
+  warn_of_spare(reader, kinds);
   Scene material = prune_to_last_material(std::move(reader.scene));
   warn_of_materials(material);
   return material;
@@ -59,6 +62,7 @@ Scene read_environment(const std::filesystem::path& folder,
   read_objects(reader);
   read_lights(reader);
   report_unused(reader, k_scene_kinds, "a scene file");
+  report_slips(reader, k_scene_kinds);
 
   std::error_code ignored;
   const bool has_film = std::filesystem::exists(film_file, ignored);
@@ -72,6 +76,7 @@ Scene read_environment(const std::filesystem::path& folder,
   diagnostics.throw_if_any();
   warn_of_repeats(reader.properties);
   warn_of_repeats(film.properties);
+  warn_of_spare(reader, k_scene_kinds);
   if (files != nullptr) {
     *files = std::move(reader.files);
     files->insert(files->end(), {scene_file, film_file});

@@ -30,6 +30,7 @@ void finish_metal2(const SdlNode& node, Material& material) {
   }
   const std::optional<std::string> fresnel = node.text("fresnel");
   if (!fresnel) return;
+  node.refer(SdlKind::texture, *fresnel);
   const auto found = node.reader().conductors.find(*fresnel);
   if (found == node.reader().conductors.end()) {
     node.miss_reference("fresnel", SdlKind::texture, *fresnel, node.reader().conductors);
@@ -72,6 +73,7 @@ int child_index(const SdlNode& node, std::string_view property) {
     if (!node.has(property)) node.miss(property);
     return -1;
   }
+  node.refer(SdlKind::material, *name);
   const auto found = reader.materials.find(*name);
   if (found == reader.materials.end()) {
     node.miss_reference(property, SdlKind::material, *name, reader.materials);

@@ -46,6 +46,10 @@ const SdlParameter& SdlNode::parameter(std::string_view property) const {
   return *found;
 }
 
+void SdlNode::refer(SdlKind kind, const std::string& name) const {
+  reader_->referred.insert(fmt::format("{}.{}", section_of(kind), name));
+}
+
 bool SdlNode::read_type() {
   std::string type(section_->default_type);
   if (const Property* found = use("type")) {
@@ -238,6 +242,7 @@ std::optional<TextureRef> SdlNode::texture(std::string_view property) const {
     return value;
   };
   if (found->values.size() == 1) {
+    refer(SdlKind::texture, found->values[0]);
     const auto named = reader_->textures.find(found->values[0]);
     if (named != reader_->textures.end()) return as_wanted(named->second);
   }

@@ -62,6 +62,9 @@ class SdlNode {
   void read_row(const NodeType& row, std::vector<TextureRef>& inputs,
                 std::vector<float>& values) const;
 
+  /// That this refers to a thing by its name, which is then used by something.
+  void refer(SdlKind kind, const std::string& name) const;
+
   /// Says that one of the properties must be there, unless a misspelt one seems to be meant for it.
   void miss(std::span<const std::string_view> properties, std::string_view what) const;
   void miss(std::string_view property) const;

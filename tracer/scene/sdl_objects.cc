@@ -108,6 +108,7 @@ void transform(FileMesh& mesh, const Mat4& m) {
 std::optional<FileMesh> shape_of(const SdlNode& node) {
   const std::optional<std::string> name = node.text("shape");
   if (!name) return std::nullopt;
+  node.refer(SdlKind::shape, *name);
   const auto found = node.reader().shapes.find(*name);
   if (found != node.reader().shapes.end()) return found->second;
   node.miss_reference("shape", SdlKind::shape, *name, node.reader().shapes);
@@ -163,6 +164,7 @@ int material_of(const SdlNode& node) {
     if (!node.has("material")) node.miss("material");
     return -1;
   }
+  node.refer(SdlKind::material, *name);
   const auto found = node.reader().materials.find(*name);
   if (found != node.reader().materials.end()) return found->second;
   node.miss_reference("material", SdlKind::material, *name, node.reader().materials);

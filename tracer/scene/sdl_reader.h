@@ -58,6 +58,8 @@ struct SdlReader {
   std::set<std::string> broken;
   std::vector<std::filesystem::path> files;  ///< that properties name
   ContentOf content_of = content_hash;       ///< of images
+  /// "scene.materials.body": what an object, a material or a texture refers to.
+  std::set<std::string> referred;
   std::set<std::string> missed;  ///< names that were looked for in vain, and said to be so
 };
 
@@ -65,6 +67,11 @@ class SdlNode;
 
 /// Says of each property that nobody took why not; `kinds` are those that may stand in the file.
 void report_unused(SdlReader& reader, std::span<const SdlKind> kinds, std::string_view what);
+/// A finding for each thing without a type whose name looks like that of another, where one of the two
+/// is used by nothing ("scene.materials.redplastic.kd" beside "scene.materials.red-plastic.type").
+void report_slips(SdlReader& reader, std::span<const SdlKind> kinds);
+/// Warns of each thing that nothing uses: it changes no picture.
+void warn_of_spare(SdlReader& reader, std::span<const SdlKind> kinds);
 /// A section whose name is misspelt ("scene.material") is said once and read as what it means.
 void mend_section_names(SdlReader& reader);
 /// The known property that an unknown one of a thing seems to be meant for; "" where none is.

@@ -278,6 +278,15 @@ INSTANTIATE_TEST_SUITE_P(
              "scene.materials.a.name = gold",
              "m.scn:3: scene.materials.a.name has no effect beside the material's other "
              "properties"},
+        // A name that lost its hyphen is another material: the one that counts, or one that is spare.
+        Case{"scene.materials.red-plastic.type = glossy2\nscene.materials.red-plastic.ks = .04\n"
+             "scene.materials.redplastic.kd = 0.5 0 0",
+             "m.scn:3: scene.materials.redplastic has no type and is another material than "
+             "red-plastic, did you mean scene.materials.red-plastic?"},
+        Case{"scene.materials.redplastic.kd = 0.5 0 0\nscene.materials.red-plastic.type = glossy2",
+             "m.scn:1: scene.materials.redplastic has no type and is another material than "
+             "red-plastic, did you mean scene.materials.red-plastic?"},
+        Case{"scene.materials.wall1.kd = 1\nscene.materials.wall2.type = matte", ""},
         Case{"scene.camera.type = perspective\nscene.camera.up = 0 0 1\n"
              "scene.camera.fieldofview = 45\nscene.materials.a.kd = 1",
              "m.scn:1: scene.camera.type does not belong here: the camera is in the recipe"}));
@@ -289,6 +298,15 @@ INSTANTIATE_TEST_SUITE_P(
             "scene.lights.l.type = piont",
             "environment.scn:1: scene.lights.l.type: light type \"piont\" is unknown, did you mean "
             "point?"},
+        // Without the slip it would be a sky of its own.
+        Case{"scene.lights.lamp.type = point\nscene.lights.lmap.gain = 2 2 2",
+             "environment.scn:2: scene.lights.lmap has no type and is another light than lamp, did "
+             "you mean scene.lights.lamp?"},
+        Case{"scene.materials.floor.type = glossy2\nscene.materials.flor.kd = 0.5\n"
+             "scene.objects.o.material = floor\n"
+             "scene.objects.o.vertices = 0 0 0 1 0 0 0 1 0\nscene.objects.o.faces = 0 1 2",
+             "environment.scn:2: scene.materials.flor has no type and is another material than "
+             "floor, did you mean scene.materials.floor?"},
         Case{"scene.lights.l.type = infinite\nscene.lights.l.flie = sky.exr",
              "environment.scn:2: scene.lights.l.flie is unknown to a light, did you mean file?"},
         Case{"scene.materials.body.kd = 1\n"

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace ds {
 namespace {
 
@@ -179,6 +181,32 @@ TEST(SdlPhysical, AnEnvironmentSaysItOnce) {
   EXPECT_THAT(said,
               EndsWith("environment.scn:1: scene.materials.body.kd: wanted numbers in [0, 1], "
                        "found 3: it gives back more light than it gets\n"));
+}
+
+TEST(SdlWarnings, WhatNothingUsesIsSaid) {
+  const ds::testing::SdlFolder folder;
+  ::testing::internal::CaptureStderr();
+  folder.material(
+      "scene.textures.grain.type = fbm\n"
+      "scene.textures.grain.mapping.type = globalmapping3d\n"
+      "scene.materials.gloss.type = glossy2\nscene.materials.dull.type = matte\n");
+  folder.environment(
+      "scene.textures.grain.type = fbm\n"
+      "scene.textures.grain.mapping.type = globalmapping3d\n"
+      "scene.textures.index.type = fresnelcolor\n"
+      "scene.materials.metal.type = metal2\nscene.materials.metal.fresnel = index\n"
+      "scene.materials.body.type = matte\nscene.materials.body.kd = grain\n"
+      "scene.shapes.ball.type = inlinedmesh\nscene.shapes.ball.vertices = 0 0 0 1 0 0 0 1 0\n"
+      "scene.shapes.ball.faces = 0 1 2\n" +
+      std::string(ds::testing::k_square) + "scene.lights.l.type = constantinfinite\n");
+  const std::string said = ::testing::internal::GetCapturedStderr();
+  EXPECT_THAT(said, HasSubstr("m.scn:1: scene.textures.grain is used by nothing\n"));
+  EXPECT_THAT(said, HasSubstr("m.scn:3: scene.materials.gloss is used by nothing: a material file "
+                              "is for its last material, dull\n"));
+  EXPECT_THAT(said, HasSubstr("environment.scn:4: scene.materials.metal is used by nothing\n"));
+  EXPECT_THAT(said, HasSubstr("environment.scn:8: scene.shapes.ball is used by nothing\n"));
+  // The light, the square, its material and texture, and what the metal reads are used.
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 4) << said;
 }
 
 TEST(SdlWarnings, APropertyThatStandsTwiceIsSaidOnce) {
