@@ -40,7 +40,11 @@ void check_errors(const CheckInput& input, CheckReport& report) {
     const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
     std::nth_element(errors.begin(), middle, errors.end());
     const double median = *middle;
-    report.add(CheckLevel::warning,
+    // engine.error bounds what is seen, the developed picture; relative_error is of the linear one, whose
+    // bright pixels count more.
+    const std::string target = input.setting("engine.error");
+    const bool has_target = !target.empty() && target != "false";
+    report.add(has_target ? CheckLevel::note : CheckLevel::warning,
                fmt::format("pictures are more than {} times as noisy as the median ({:.3g})",
                            over_median, median),
                ids_where(input.images,
@@ -48,7 +52,9 @@ void check_errors(const CheckInput& input, CheckReport& report) {
                            return image.relative_error &&
                                   *image.relative_error > over_median * median;
                          }),
-               errors.size(), "engine.error gives all pictures one noise");
+               errors.size(),
+               has_target ? "before tone mapping; what is seen of it engine.error bounds in all"
+                          : "engine.error gives all pictures one noise");
   }
   if (most > 0)
     report.add(

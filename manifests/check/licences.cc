@@ -23,13 +23,16 @@ void check_licences(const CheckInput& input, CheckReport& report) {
       }
   }
   if (input.dataset.licence.empty())
-    report.say(CheckLevel::warning, "the dataset names no licence",
-               "dataset.licence = \"CC-BY-4.0\"");
+    report.say(
+        CheckLevel::note, "the dataset names no licence",
+        "dataset.licence says what others may do with the pictures; it is yours to give as far "
+        "as the models' licences allow");
   if (licensed.empty())
     report.say(CheckLevel::warning, "no licence stands beside any model or scene",
                "a LICENSE file in their folders");
-  report.add(CheckLevel::note, "models and scenes have a licence that is no text of SPDX", unnamed,
-             licensed.size(), "", std::vector<std::string>());
+  report.add(CheckLevel::note,
+             "models and scenes have a licence text that is none of those known by name (SPDX)",
+             unnamed, licensed.size(), "", std::vector<std::string>());
   report.add(CheckLevel::note, "licences allow not every use, or want the same of what is made",
              limited, input.dataset.licences.size(), "", std::vector<std::string>());
 }

@@ -84,6 +84,24 @@ TEST(Checks, OneMeshInTwoSplits) {
   EXPECT_THAT(found(input, "leaks"), IsEmpty());
 }
 
+TEST(Checks, OneMeshInTwoClasses) {
+  CheckInput input = clean();
+  for (const char* view : {"0", "1"})
+    image_of(input, std::string("ship1.ply/") + view).parts[0] = hash_text("mug0.ply");
+  const std::string wanted =
+      "error: 1/23 models are the same mesh in two classes: mug0.ply (mug), ship1.ply (ship)";
+  EXPECT_THAT(found(input, "labels"), ElementsAre(wanted));  // both in train
+  EXPECT_THAT(found(input, "leaks"), IsEmpty());
+  for (ImageRecord& image : input.images)
+    if (image.model == "ship1.ply") image.split = "test";
+  EXPECT_THAT(found(input, "labels"), ElementsAre(wanted));
+  EXPECT_EQ(run_checks(input, {"labels"}).at(0).images.size(), 4U);
+  // A model that no class file lists says nothing of another.
+  for (ImageRecord& image : input.images)
+    if (image.model == "ship1.ply") image.class_path.clear();
+  EXPECT_THAT(found(input, "labels"), IsEmpty());
+}
+
 TEST(Checks, PicturesOfEqualPixels) {
   CheckInput input = clean();
   image_of(input, "mug1.ply/1").files[0].pixels = image_of(input, "mug1.ply/0").files[0].pixels;
@@ -275,11 +293,29 @@ TEST(Checks, NoiseAndLostSamples) {
                   HasSubstr("lost samples that were NaN, infinite or negative: car0.ply/1")));
 }
 
+TEST(Checks, NoiseIsBoundedAlreadyWhereTheRecipeSaysSo) {
+  CheckInput input = clean();
+  image_of(input, "car0.ply/0").relative_error = 0.061;
+  input.dataset.recipe_text = "engine.error = 0.1\n";
+  EXPECT_THAT(found(input, "errors"), IsEmpty());
+  const std::vector<CheckFinding> all = run_checks(input, {"errors"});
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_THAT(all[0].advice, HasSubstr("engine.error bounds"));
+  input.dataset.recipe_text = "engine.error = false\n";
+  EXPECT_THAT(found(input, "errors"), ElementsAre(HasSubstr("warning: 1/48 pictures are more")));
+}
+
 TEST(Checks, MissingLicences) {
   CheckInput input = clean();
   input.dataset.licence.clear();
   input.dataset.licences.clear();
-  EXPECT_EQ(found(input, "licences").size(), 2u);
+  EXPECT_THAT(found(input, "licences"), ElementsAre(HasSubstr("no licence stands beside any")));
+  // What the pictures may be used for is the maker's to say, within what the models allow.
+  const std::vector<CheckFinding> all = run_checks(input, {"licences"});
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0].what, "the dataset names no licence");
+  for (const CheckFinding& finding : all)
+    EXPECT_EQ(finding.advice.find("CC"), std::string::npos) << "no licence is proposed";
 }
 
 }  // namespace
