@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -123,6 +124,30 @@ void read_hierarchies(const Settings& settings, Recipe& recipe) {
   }
 }
 
+namespace {
+
+/// A list of classes that lacks one that a model is of: most likely its name is misspelt.
+void warn_of_unlisted_classes(const Recipe& recipe, const fs::path& ids) {
+  std::set<std::string_view> said;
+  for (const ModelFile& model : recipe.models) {
+    const auto index = recipe.labels.find_index(model.name);
+    if (!index) continue;
+    const LabelledModel& entry = recipe.labels.entry(*index);
+    const std::string& path = entry.label.class_path;
+    const bool known = path.empty() || std::find(recipe.class_ids.begin(), recipe.class_ids.end(),
+                                                 path) != recipe.class_ids.end();
+    if (known || !said.insert(path).second) continue;
+    const std::string place =
+        entry.place.file.empty() ? model.file.string() : to_string(entry.place);
+    const std::string_view meant = nearest(path, recipe.class_ids);
+    warn(fmt::format("{}: class {} is no line of {}{}", place, path, ids.string(),
+                     meant.empty() ? ": its id comes behind those of the lines"
+                                   : fmt::format(", did you mean {}?", meant)));
+  }
+}
+
+}  // namespace
+
 void read_class_ids(const Settings& settings, Recipe& recipe) {
   const RecipeValue* value = settings.find("classes.ids");
   if (value == nullptr) return;
@@ -150,6 +175,7 @@ void read_class_ids(const Settings& settings, Recipe& recipe) {
   } catch (const Error& error) {
     add_findings(error, diagnostics);
   }
+  if (diagnostics.empty()) warn_of_unlisted_classes(recipe, *file);
 }
 
 }  // namespace ds

@@ -65,6 +65,19 @@ std::optional<PlaneOutput> read_plane(const Settings& settings, const RecipeValu
   return std::nullopt;
 }
 
+/// outputs.mask and outputs.depth, where the recipe gives them, say the same of their plane as outputs.planes.
+void check_said_twice(const Settings& settings, const PlaneOutput& plane) {
+  const std::string key = fmt::format("outputs.{}", plane.type->name);
+  const bool has_key = key == "outputs.mask" || key == "outputs.depth";
+  if (!has_key || !settings.given(key) || settings.wrong(key)) return;
+  const std::string_view wanted = name_of(plane.encoding);
+  const std::string literal = settings.literal(key);
+  if (literal == "true" || literal == fmt::format("{:?}", wanted)) return;
+  settings.complain(key,
+                    fmt::format("is {}, and outputs.planes has {} as {}; wanted one of the two",
+                                literal == "false" ? "off" : literal, plane.type->name, wanted));
+}
+
 }  // namespace
 
 const PlaneOutput* OutputSettings::find_plane(std::string_view name) const {
@@ -95,10 +108,27 @@ std::vector<PlaneOutput> read_planes(const Settings& settings) {
     if (!plane) continue;
     if (std::find(named.begin(), named.end(), plane->type) != named.end())
       settings.complain(value, "outputs.planes", fmt::format("names {} twice", plane->type->name));
+    else
+      check_said_twice(settings, *plane);
     named.push_back(plane->type);
     outputs.set_plane(*plane);
   }
   return outputs.planes;
+}
+
+std::string plane_meant(std::string_view key, const RecipeValue& value) {
+  constexpr std::string_view k_section = "outputs.";
+  if (!key.starts_with(k_section) || key == "outputs.mask") return "";
+  const PlaneType* type = find_by_any_name(std::string(key.substr(k_section.size())));
+  if (type == nullptr) return "";
+  const std::string text = value.text() != nullptr ? *value.text() : "";
+  std::string plane(type->name);
+  for (const PlaneEncoding encoding : encodings_of(*type))
+    if (!text.empty() && name_of(encoding).starts_with(text)) {
+      plane += fmt::format(":{}", name_of(encoding));
+      break;
+    }
+  return fmt::format("; outputs.planes = [\"{}\"] writes it", plane);
 }
 
 std::string plane_reference() {

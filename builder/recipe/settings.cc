@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/recipe/settings.h"
 
+#include "builder/recipe/planes.h"
 #include "builder/recipe/variables.h"
 #include "tracer/base/nearest.h"
 
@@ -179,9 +180,10 @@ void Settings::check(const std::string& name, RecipeValue value) {
     return;
   }
   if (const RecipeValue* unfit = unfit_part(*key, value)) {
+    const std::string plane = plane_meant(name, *unfit);
     complain(*unfit, name,
              fmt::format("must be {}, got {}{}{}", wanted_text(*key), found_text(*unfit),
-                         choice_meant(*key, *unfit),
+                         plane.empty() ? choice_meant(*key, *unfit) : plane,
                          is_distribution(value) ? "; it takes no distribution" : ""));
     wrong_.emplace(name, std::move(value));
     return;
@@ -194,7 +196,11 @@ void Settings::complain_of_unknown(const std::string& name, const RecipeValue& v
     complain(value, name, "is no section of a recipe" + known_words(name, recipe_sections()));
     return;
   }
-  std::string help;
+  std::string help = plane_meant(name, value);
+  if (!help.empty()) {
+    complain(value, name, "is no key of a recipe" + help);
+    return;
+  }
   if (const std::string_view meant = nearest_key(name); !meant.empty()) {
     meant_.emplace(meant);
     help = fmt::format(", did you mean {}?", meant);

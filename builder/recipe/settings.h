@@ -29,6 +29,8 @@ class Settings {
 
   /// Whether the recipe or --set names the key, right or wrong.
   bool given(std::string_view key) const { return values_.contains(key) || wrong_.contains(key); }
+  /// Whether the value that they give the key has a finding, so that it reads as the default.
+  bool wrong(std::string_view key) const { return wrong_.contains(key); }
   bool given_by_set(std::string_view key) const;
   /// The value given or the default; nullptr where there is neither.
   const RecipeValue* find(std::string_view key) const;

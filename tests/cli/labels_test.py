@@ -187,6 +187,18 @@ class LabelsTest(TinyCase):
         self.assertEqual((listed["thing"]["id"], listed["thing"]["models"], listed["thing"]["images"]), (None, 1, 4))
         self.assertEqual((listed["solid"]["id"], listed["solid"]["models"]), (1, 0))
 
+    def test_a_class_that_the_ids_lack_is_said(self):
+        more = self.write_classes("box,car\ntetra,cra\n", "car\nanimal\n")
+        for verb in ("plan", "build"):
+            run = self.run_it(verb, self.recipe, "-o", self.out, *more)
+            self.assertEqual(run.code, 0, run)
+            self.assertIn(f"{self.tiny}/classes.csv:3: class cra is no line of {self.tiny}/ids.txt, did you mean car?", run.err)
+            self.assertNotIn("class car is", run.err)
+        more = self.write_classes("box,car\ntetra,boat\n", "car\nanimal\n")
+        self.assertIn("class boat is no line of", self.run_it("plan", self.recipe, "-o", self.out, *more).err)
+        more = self.write_classes("box,car\ntetra,animal\n", "car\nanimal\n")
+        self.assertNotIn("no line of", self.run_it("plan", self.recipe, "-o", self.out, *more).err)
+
     def test_ids_that_cannot_be_meant_are_named_by_line(self):
         for text, why in (("a\nb\na\n", "ids.txt:3: class a stands in line 1 already"),
                           ("a//b\n", "ids.txt:1: a class must be names with / between")):

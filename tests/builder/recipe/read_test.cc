@@ -154,7 +154,8 @@ TEST_F(RecipeReadTest, ReportsAllFindingsWithTheirPlacesInTheirOrder) {
       "r.toml:17:2: lights is no section of a recipe; there are dataset, models, classes, "
       "materials, "
       "environments, camera, engine, outputs, check\n"
-      "r.toml:19:9: outputs.depth must be \"exr\" or false, got true\n"
+      "r.toml:19:9: outputs.depth must be \"exr\" or false, got true; outputs.planes = "
+      "[\"depth\"] writes it\n"
       "r.toml:10:7: models.dir must be a folder, found nowhere: No such file or directory\n"
       "r.toml:16:3: environments.files must name a folder that holds an environment.scn, found "
       "none at "
@@ -250,6 +251,37 @@ TEST_F(RecipeReadTest, WantsOneOutputAtLeast) {
   EXPECT_TRUE(folder_.read().outputs.image);
   EXPECT_EQ(folder_.findings("[outputs]\nimage = false\nmask = false\n"),
             "r.toml:5:9: outputs.image is off, and so are mask and depth; wanted one at least");
+}
+
+TEST_F(RecipeReadTest, APlaneIsAskedForOnce) {
+  EXPECT_EQ(
+      folder_.findings("[outputs]\ndepth = \"exr\"\nplanes = [\"depth:png16\"]\n"),
+      "r.toml:5:9: outputs.depth is \"exr\", and outputs.planes has depth as png16; wanted one "
+      "of the two");
+  EXPECT_EQ(
+      folder_.findings("[outputs]\nmask = false\nplanes = [\"mask\"]\n"),
+      "r.toml:5:8: outputs.mask is off, and outputs.planes has mask as png8; wanted one of the "
+      "two");
+  EXPECT_EQ(folder_.findings("outputs.planes = [\"depth:png16\"]\n", {"outputs.depth=false"}),
+            "--set outputs.depth: is off, and outputs.planes has depth as png16; wanted one of the "
+            "two");
+  // Both say the same, or one of them is a default.
+  for (const char* text :
+       {"mask = true\nplanes = [\"mask\"]", "planes = [\"mask\", \"depth:png16\"]",
+        "depth = \"exr\"\nplanes = [\"depth\"]"})
+    EXPECT_EQ(folder_.findings(std::string("[outputs]\n") + text), "") << text;
+}
+
+TEST_F(RecipeReadTest, ThePlaneThatIsMeantIsSaid) {
+  EXPECT_EQ(folder_.findings("outputs.depth = \"png16\""),
+            "r.toml:4:17: outputs.depth must be \"exr\" or false, got \"png16\"; outputs.planes = "
+            "[\"depth:png16\"] writes it");
+  EXPECT_EQ(folder_.findings("outputs.depth = \"png\""),
+            "r.toml:4:17: outputs.depth must be \"exr\" or false, got \"png\"; outputs.planes = "
+            "[\"depth:png16\"] writes it");
+  EXPECT_EQ(folder_.findings("outputs.amodal_mask = true"),
+            "r.toml:4:23: outputs.amodal_mask is no key of a recipe; outputs.planes = "
+            "[\"amodal_mask\"] writes it");
 }
 
 TEST_F(RecipeReadTest, RefusesTwoModelsOfOneName) {
