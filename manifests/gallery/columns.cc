@@ -105,6 +105,43 @@ std::array<double, 3> model_middle(const json& line) {
 
 }  // namespace
 
+namespace {
+
+/// The digits that `text` begins with, without zeros before them; taken off it.
+std::string_view take_number(std::string_view& text) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::size_t end = 0;
+  while (end < text.size() && is_digit(text[end]))
+    ++end;
+  std::string_view number = text.substr(0, end);
+  text.remove_prefix(end);
+  const std::size_t first = std::min(number.find_first_not_of('0'), number.size());
+  return number.substr(first);
+}
+
+}  // namespace
+
+bool as_people_count(const std::string& a, const std::string& b) {
+  std::string_view x = a, y = b;
+  while (!x.empty() && !y.empty()) {
+    const std::size_t x_size = x.size(), y_size = y.size();
+    const std::string_view m = take_number(x), n = take_number(y);
+    const bool both = x.size() < x_size && y.size() < y_size;
+    if (both) {
+      if (m.size() != n.size()) return m.size() < n.size();
+      if (m != n) return m < n;
+      continue;
+    }
+    // One of them is no number: as texts.
+    x = std::string_view(a).substr(a.size() - x_size);
+    y = std::string_view(b).substr(b.size() - y_size);
+    if (x.front() != y.front()) return x.front() < y.front();
+    x.remove_prefix(1);
+    y.remove_prefix(1);
+  }
+  return x.size() != y.size() ? x.size() < y.size() : a < b;
+}
+
 std::string short_json_number(double value) {
   if (!std::isfinite(value)) return "null";
   return fmt::format("{:.6g}", value + 0.0);
@@ -231,7 +268,7 @@ std::vector<GalleryColumn> GalleryColumns::take() && {
     column.texts.resize(column.type == GalleryColumn::Type::list ? images_ : 0);
     column.numbers.resize(column.type == GalleryColumn::Type::number ? images_ : 0, k_unknown);
     column.values = column.texts;
-    std::sort(column.values.begin(), column.values.end());
+    std::sort(column.values.begin(), column.values.end(), as_people_count);
     column.values.erase(std::unique(column.values.begin(), column.values.end()),
                         column.values.end());
     const bool says = column.type == GalleryColumn::Type::number || column.values.size() > 1 ||

@@ -52,6 +52,10 @@ class GalleryColumns {
   std::size_t images_ = 0;
 };
 
+/// Order of a list's values: digits that stand together are a number ("2" before "10", "v9" before "v10"),
+/// the rest is by bytes.
+bool as_people_count(const std::string& a, const std::string& b);
+
 /// "0.0312", "12", "null": six digits at most.
 std::string short_json_number(double value);
 

@@ -146,7 +146,8 @@ void write_grid(const std::vector<ImageRecord>& images, const std::vector<Galler
     text += fmt::format(",\n{}:", json(column.key).dump());
     text += joined(begin, end, [&](std::size_t i) {
       if (column.type == GalleryColumn::Type::number) return short_json_number(column.numbers[i]);
-      const auto at = std::lower_bound(column.values.begin(), column.values.end(), column.texts[i]);
+      const auto at = std::lower_bound(column.values.begin(), column.values.end(), column.texts[i],
+                                       as_people_count);
       return std::to_string(at - column.values.begin());
     });
   }

@@ -38,6 +38,22 @@ json line_at(double x) {
           {"camera_to_world", {{0, 0, -1, x}, {1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, 0, 1}}}};
 }
 
+TEST(GalleryColumns, ViewsAreInTheOrderOfTheirNumbers) {
+  GalleryColumns collected;
+  for (const char* view : {"0", "1", "10", "13-2", "13-10", "2", "a10", "a9", "03", "3", ""}) {
+    json line = line_at(2);
+    line["view"] = view;
+    collected.add(line, {});
+  }
+  EXPECT_EQ(
+      at(std::move(collected).take(), "view").values,
+      (std::vector<std::string>{"", "0", "1", "2", "03", "3", "10", "13-2", "13-10", "a9", "a10"}));
+  // A strict order of different texts: none is before itself, and of two one is.
+  for (const std::string a : {"", "1", "01", "1a", "a", "a1", "10"})
+    for (const std::string b : {"", "1", "01", "1a", "a", "a1", "10"})
+      EXPECT_EQ(as_people_count(a, b) + as_people_count(b, a), a == b ? 0 : 1) << a << " " << b;
+}
+
 TEST(GalleryColumns, AreWhatTheLineSays) {
   GalleryColumns collected;
   collected.add(line_at(2), {.brightness = 0.5, .contrast = {}, .box = {{50, 0, 100, 50}}});
