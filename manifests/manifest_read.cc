@@ -343,8 +343,16 @@ void read_concerns(const json& owner, const SourcePlace& place, Diagnostics& dia
 
 std::string read_manifest_file(const fs::path& file) {
   std::error_code error;
-  if (!fs::is_regular_file(file, error))
+  if (!fs::is_regular_file(file, error)) {
+    // FOLDER/manifest/FILE: where not even the folder between is there, no dataset is meant.
+    const fs::path folder = file.parent_path().parent_path();
+    const bool is_dataset = fs::is_directory(file.parent_path(), error) ||
+                            fs::exists(folder / ".dsbuild" / "dataset", error);
+    if (!is_dataset)
+      fail(ErrorKind::usage, "{}: wanted the folder of a dataset, found one without manifest/{}",
+           folder.string(), file.filename().string());
     fail(ErrorKind::asset, "{}: must be there: a dataset has a manifest", file.string());
+  }
   return read_text_file(file);
 }
 

@@ -26,7 +26,7 @@ struct Arguments {
   std::uint64_t rerender = 0, seed = 0;
   double stall_seconds = 900;
   std::string format, export_folder, gallery_folder, diff_folder, hierarchy;
-  std::string import_from, import_psb, import_folder;
+  std::string import_from, import_psb, import_folder, import_classes = "folders";
   std::vector<std::string> splits, filters, only;
   std::string report_file, against;
   int most_spp = 0, seeds = 4;
@@ -40,6 +40,7 @@ struct Arguments {
   bool rehash = false;
   bool adopt = false;
   bool copy = false;
+  bool partial = false;
   bool verbose = false;
   std::string shell, init_file;
   std::string store_task, older, size;
@@ -69,6 +70,7 @@ enum class Option {
   diff_folder,
   import_from,
   import_folder,
+  import_classes,
   copy_models,
   optional_target_and_image,
   topic,
@@ -103,6 +105,7 @@ enum class Option {
   seed,
   format,
   export_folder,
+  partial,
   gallery_folder,
   splits,
   hierarchy,

@@ -253,8 +253,10 @@ int run_build(const Arguments& arguments) {
     put_database(*dataset.store, *dataset.database, arguments.database_folder, disk);
   if (arguments.database_folder.empty() && is_whole && result.ok()) remove_mark(dataset);
   const std::size_t concerns = tell_concerns(result.concerns, dataset.recipe, arguments.strict);
-  if (const std::uint64_t others = result.failed + result.not_reached; others > 0)
-    say(Stream::people, "not looked at: {} of {} images, which are not made\n", others,
+  // Where it was stopped, what stands there of an earlier build was looked at.
+  if (const std::uint64_t others = result.failed + result.not_reached;
+      others > 0 && !result.stopped)
+    say(Stream::people, "not looked at: {} of {} images, which this build did not make\n", others,
         result.images);
   nlohmann::json told = to_json(result, dataset);
   told["lacking"] = to_json(all_lacking);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "manifests/check/check.h"
 
+#include "builder/cmd/grammar.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/verbs.h"
 #include "tracer/base/streams.h"
@@ -21,7 +22,7 @@ nlohmann::json to_json(const std::vector<CheckFinding>& findings) {
 void print(const CheckFinding& finding) {
   std::string text = fmt::format("{}: {}: ", name_of(finding.level), finding.check);
   if (finding.of > 0) text += fmt::format("{} of {} ", finding.count, finding.of);
-  text += finding.what;
+  text += finding.of > 0 ? agreeing(finding.count, finding.what) : finding.what;
   if (!finding.examples.empty()) text += fmt::format(": {}", fmt::join(finding.examples, ", "));
   if (finding.count > finding.examples.size())
     text += fmt::format(" and {} more", finding.count - finding.examples.size());

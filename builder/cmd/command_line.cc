@@ -7,7 +7,9 @@
 #include "tracer/device/opencl.h"
 
 #include <filesystem>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -18,11 +20,18 @@ void change_folder(const std::string& folder) {
   if (error) fail(ErrorKind::usage, "-C {}: {}", folder, error.message());
 }
 
+/// What dsbuild diff takes, in order.
+constexpr std::pair<std::string_view, std::string_view> k_of_diff[] = {
+    {"A", "a recipe, the folder of a dataset or an image file"},
+    {"B", "what A is to be compared with: another dataset, or an image file beside an image file"}};
+
 /// What is left of what CLI11 finds: check_words has found all words to be known.
 std::string said(const CLI::ParseError& error, const Verb& verb) {
   const std::string text = error.what();
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
     const std::string wanted = text.substr(0, text.find(' '));
+    for (const auto& [name, what] : k_of_diff)
+      if (wanted == name) return fmt::format("{}: wanted {}, {}", verb.name, wanted, what);
     if (wanted != "DATASET") return fmt::format("{}: wanted {}", verb.name, wanted);
     return fmt::format(
         "{}: wanted a DATASET: a recipe (.toml), or the folder an earlier build wrote", verb.name);

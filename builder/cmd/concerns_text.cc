@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/concerns_text.h"
 
+#include "builder/cmd/grammar.h"
 #include "builder/plan/dataset_concerns.h"
 #include "tracer/base/error.h"
 #include "tracer/base/log.h"
@@ -64,6 +65,19 @@ std::string way_out(const Concern& concern) {
                             : fmt::format(" ({} in the recipe says that it is meant)", allowed_by);
 }
 
+/// What became of models that no class file lists, and which files those are.
+std::string remedy(const Concern& concern, const Recipe& recipe) {
+  if (concern.name != "models_unlisted") return "";
+  std::vector<std::string> files;
+  for (const auto& file : {recipe.class_table, recipe.train_classes, recipe.test_classes})
+    if (file) files.push_back(file->string());
+  const bool left_out = recipe.models.size() + concern.count == concern.of;
+  return fmt::format(
+      "; {}{}", left_out ? "left out" : "built without a class",
+      files.empty() ? ""
+                    : fmt::format(": a line for each in {} mends it", fmt::join(files, " or ")));
+}
+
 /// A class without images is one whose models are absent.
 bool is_allowed(const Concern& concern, const ClassCoverage& coverage) {
   return ((concern.name == "models_absent" || concern.name == "classes_empty") &&
@@ -76,7 +90,8 @@ bool is_allowed(const Concern& concern, const ClassCoverage& coverage) {
 
 std::string to_text(const Concern& concern) {
   std::string text = fmt::format("{} of {} {}: {}", concern.count, concern.of,
-                                 text_of(concern).text, fmt::join(concern.examples, ", "));
+                                 agreeing(concern.count, text_of(concern).text),
+                                 fmt::join(concern.examples, ", "));
   if (concern.count > concern.examples.size())
     text += fmt::format(" and {} more", concern.count - concern.examples.size());
   return text;
@@ -94,12 +109,13 @@ std::size_t tell_concerns(const std::vector<Concern>& concerns, const Recipe& re
   for (const Concern& concern : concerns) {
     if (concern.count == 0) continue;
     if (is_allowed(concern, recipe.coverage)) {
-      say(Stream::people, "{}\n", to_text(concern));
+      say(Stream::people, "{}{}\n", to_text(concern), remedy(concern, recipe));
     } else if (strict) {
       ++errors;
-      say(Stream::people, "dsbuild: error: {}{} (--strict)\n", to_text(concern), way_out(concern));
+      say(Stream::people, "dsbuild: error: {}{}{} (--strict)\n", to_text(concern),
+          remedy(concern, recipe), way_out(concern));
     } else if (!text_of(concern).said) {
-      warn(to_text(concern) + way_out(concern));
+      warn(to_text(concern) + remedy(concern, recipe) + way_out(concern));
     }
   }
   const auto masks = std::find_if(concerns.begin(), concerns.end(),
@@ -126,7 +142,7 @@ std::vector<Concern> tell_planned_concerns(const Recipe& recipe, const Plan& pla
   const std::vector<Concern> concerns = dataset_concerns(recipe, plan.concerns, {}, images);
   for (const Concern& concern : concerns)
     if (concern.count > 0 && !text_of(concern).said && !is_allowed(concern, recipe.coverage))
-      warn(to_text(concern) + way_out(concern));
+      warn(to_text(concern) + remedy(concern, recipe) + way_out(concern));
   return concerns;
 }
 

@@ -6,12 +6,14 @@
 #include "builder/cmd/stop_signal.h"
 #include "builder/cmd/verbs.h"
 #include "builder/cmd/work_progress.h"
+#include "manifests/whole_folder.h"
 #include "tracer/base/error.h"
 #include "tracer/base/log.h"
 #include "tracer/base/streams.h"
 #include "tracer/scene/mesh.h"
 
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <map>
 
@@ -52,6 +54,14 @@ std::function<FileMesh(const ImageRecord&)> mesh_reader(const Arguments& argumen
   };
 }
 
+/// Of one that stands there; "" where none does.
+std::string format_of_export(const std::filesystem::path& folder) {
+  std::ifstream file(folder / k_export_folder.record);
+  if (!file) return "";
+  const nlohmann::json record = nlohmann::json::parse(file, nullptr, false);
+  return record.is_object() ? record.value("format", "") : "";
+}
+
 ExportResult run(const ExportRequest& request) {
   const std::atomic<bool>& stop = stop_on_signal();
   WorkProgress progress("images exported");
@@ -66,12 +76,20 @@ int run_export(const Arguments& arguments) {
   ExportRequest request{folder,           arguments.export_folder, arguments.format,
                         arguments.splits, filters_of(arguments),   arguments.hierarchy,
                         arguments.copy,   mesh_reader(arguments),  {}};
-  if (const std::string why = behind_recipe(arguments, "exported is what the manifest lists");
-      !why.empty())
-    request.notes.push_back(why);
+  const BehindRecipe behind = behind_recipe(arguments, "exported is what the manifest lists");
+  if (behind.unmade > 0 && !arguments.partial)
+    fail(ErrorKind::asset,
+         "{}: {} of {} images are not made; dsbuild build makes them, and --partial exports the "
+         "others without them",
+         folder.string(), behind.unmade, behind.images);
+  if (!behind.text.empty()) request.notes.push_back(behind.text);
+  const std::string before = format_of_export(request.to);
   const ExportResult result = run(request);
   for (const std::string& note : result.notes)
     warn(note);
+  if (!before.empty() && before != arguments.format)
+    warn(fmt::format("{}: the export as {} that stood there is replaced", arguments.export_folder,
+                     before));
   if (arguments.json) {
     print_json({{"format", arguments.format},
                 {"folder", arguments.export_folder},

@@ -34,7 +34,8 @@ fs::path gallery_folder(const Arguments& arguments, const fs::path& dataset) {
 int run_gallery(const Arguments& arguments) {
   const fs::path dataset = dataset_folder(arguments.request());
   GalleryRequest request{dataset, gallery_folder(arguments, dataset)};
-  if (const std::string why = behind_recipe(arguments, "the gallery shows what the manifest lists");
+  if (const std::string why =
+          behind_recipe(arguments, "the gallery shows what the manifest lists").text;
       !why.empty())
     request.notes.push_back(why);
   const std::atomic<bool>& stop = stop_on_signal();

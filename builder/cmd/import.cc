@@ -6,6 +6,7 @@
 #include "builder/cmd/verbs.h"
 #include "builder/cmd/work_progress.h"
 #include "tracer/base/error.h"
+#include "tracer/base/log.h"
 #include "tracer/base/streams.h"
 
 #include <nlohmann/json.hpp>
@@ -57,6 +58,7 @@ nlohmann::json to_json(const ImportResult& result) {
           {"models", result.models},
           {"splits", result.splits},
           {"classes", result.classes},
+          {"classes_of_one_model", result.single},
           {"hierarchies", result.hierarchies},
           {"broken", broken},
           {"mended", result.mended},
@@ -64,11 +66,27 @@ nlohmann::json to_json(const ImportResult& result) {
           {"unclassified", result.unclassified}};
 }
 
+/// A folder for each model, as ShapeNet has them, is hardly a class of its own.
+void warn_of_single(const ImportResult& result, const Arguments& arguments) {
+  const auto nested =
+      std::count_if(result.single.begin(), result.single.end(),
+                    [](const std::string& path) { return path.find('/') != std::string::npos; });
+  if (nested == 0) return;
+  const bool first_helps = arguments.import_classes != "folder";
+  warn(fmt::format("{} of {} classes have one model, as {}{}", result.single.size(),
+                   result.classes.size(), result.single.front(),
+                   first_helps
+                       ? ": all folders that a model lies in are its class; with --classes folder "
+                         "the first of them is"
+                       : ""));
+}
+
 }  // namespace
 
 int run_import(const Arguments& arguments) {
   const fs::path source = source_of(arguments);
-  const ImportRequest request{source, folder_of(arguments, source), arguments.copy};
+  const ImportRequest request{source, folder_of(arguments, source), arguments.copy,
+                              arguments.import_classes};
   const std::atomic<bool>& stop = stop_on_signal();
   ImportResult result;
   {
@@ -76,6 +94,7 @@ int run_import(const Arguments& arguments) {
     result = import_models(
         request, [&](std::uint64_t done, std::uint64_t all) { progress(done, all); }, stop);
   }
+  warn_of_single(result, arguments);
   if (arguments.json) {
     print_json(to_json(result));
     return 0;
@@ -87,8 +106,9 @@ int run_import(const Arguments& arguments) {
   std::string splits;
   for (const auto& [split, count] : result.splits)
     if (!split.empty()) splits += fmt::format(", {} {}", count, split);
-  say(Stream::report, "{}: {} models of {} classes{}\n", result.recipe.string(), result.models,
-      result.classes.size(), splits);
+  say(Stream::report, "{}: {} model{} of {} class{}{}\n", result.recipe.string(), result.models,
+      result.models == 1 ? "" : "s", result.classes.size(), result.classes.size() == 1 ? "" : "es",
+      splits);
   return 0;
 }
 

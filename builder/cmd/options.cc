@@ -96,6 +96,12 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
       verb.add_option("-o,--output", to.import_folder, "the recipe's folder [DIR's name-dataset]")
           ->type_name("DIR");
       return;
+    case Option::import_classes:
+      add_word(
+          verb, "--classes", to.import_classes, {"folder", "folders"},
+          "where there are no class files: a model's class is the first folder below DIR that it "
+          "lies in, or all of them, as vehicle/car [folders]");
+      return;
     case Option::copy_models:
       verb.add_flag("--copy", to.copy, "copy the models beside the recipe, with their licences");
       return;
@@ -288,6 +294,11 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
                       "the export's folder, made whole or not at all; an export there is replaced")
           ->required()
           ->type_name("DIR");
+      return;
+    case Option::partial:
+      verb.add_flag(
+          "--partial", to.partial,
+          "export what is made of a dataset whose recipe wants more images (else an error)");
       return;
     case Option::gallery_folder:
       verb.add_option("-o,--output", to.gallery_folder,

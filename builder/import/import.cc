@@ -11,6 +11,7 @@
 #include "tracer/scene/mesh.h"
 
 #include <algorithm>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -32,13 +33,14 @@ std::string list_text(const std::vector<fs::path>& files) {
 }
 
 /// The folder as recipes read it, with the names that tell all models apart.
-Recipe read_folder(const fs::path& from, const std::vector<ClassSource>& sources) {
+Recipe read_folder(const fs::path& from, const std::string& classes,
+                   const std::vector<ClassSource>& sources) {
   const fs::path assets = shipped_assets();
   std::vector<std::string> settings{
       "models.dir=" + to_toml(fs::absolute(from).string()),
       "materials.dir=" + to_toml((assets / "materials").string()),
       "environments.dir=" + to_toml((assets / "environments").string())};
-  if (sources.empty()) settings.emplace_back("classes.from=folders");
+  if (sources.empty()) settings.emplace_back("classes.from=" + classes);
   std::vector<fs::path> more;
   for (const ClassSource& source : sources) {
     if (&source != &sources.front()) {
@@ -117,7 +119,7 @@ class Import {
  public:
   Import(const ImportRequest& request, const Recipe& recipe, const std::vector<Looked>& looked,
          bool has_files)
-      : request_(request), recipe_(recipe) {
+      : request_(request), recipe_(recipe), has_files_(has_files) {
     for (std::size_t i = 0; i < recipe.models.size(); ++i) {
       const ModelFile& model = recipe.models[i];
       if (looked[i].error) {
@@ -149,6 +151,7 @@ class Import {
 
   const ImportRequest& request_;
   const Recipe& recipe_;
+  bool has_files_;  ///< classes come from class files, not from folders
   std::vector<const ModelFile*> good_;
   bool by_path_ = false;
   ImportResult result_;
@@ -162,13 +165,16 @@ void Import::check_free() const {
   for (const char* name :
        {"recipe.toml", "classes.csv", "ids.txt", "more", "materials", "environments", "models"})
     if (fs::exists(place(name), error))
-      fail(ErrorKind::usage, "-o {}: holds a {} already; give another folder", request_.to.string(),
-           name);
+      fail(ErrorKind::usage, "-o {}: holds a {} already; give another folder{}",
+           request_.to.string(), name,
+           fs::exists(place("classes.csv"), error)
+               ? ", or add the lines of new models to its classes.csv"
+               : "");
 }
 
 void Import::write_classes() {
   std::string table = "name,class,split\n";
-  std::set<std::string> classes;
+  std::map<std::string, std::uint64_t> classes;
   for (const ModelFile* model : good_) {
     ModelLabel label = recipe_.labels.find(model->name).value_or(ModelLabel{});
     if (!is_class_path(label.class_path))
@@ -179,13 +185,16 @@ void Import::write_classes() {
     if (label.class_path.empty())
       result_.unclassified.push_back(model->below);
     else
-      classes.insert(label.class_path);
+      ++classes[label.class_path];
   }
-  result_.classes.assign(classes.begin(), classes.end());
+  for (const auto& [path, models] : classes) {
+    result_.classes.push_back(path);
+    if (models == 1 && !has_files_) result_.single.push_back(path);
+  }
   write_file_atomic(place("classes.csv"), table);
   if (classes.empty()) return;
   std::string ids;
-  for (const std::string& path : classes)
+  for (const std::string& path : result_.classes)
     ids += path + "\n";
   write_file_atomic(place("ids.txt"), ids);
 }
@@ -280,7 +289,7 @@ ImportResult import_models(const ImportRequest& request,
   if (!fs::is_directory(request.from, error))
     fail(ErrorKind::usage, "{}: wanted a folder of models, found none", request.from.string());
   const std::vector<ClassSource> sources = find_class_sources(request.from);
-  const Recipe recipe = read_folder(request.from, sources);
+  const Recipe recipe = read_folder(request.from, request.classes, sources);
   const std::vector<Looked> looked = look_at(recipe.models, progress, stop);
   return Import(request, recipe, looked, !sources.empty()).write();
 }

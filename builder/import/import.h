@@ -16,6 +16,9 @@ struct ImportRequest {
   std::filesystem::path from;  ///< a folder of models, in whatever folders
   std::filesystem::path to;    ///< becomes the folder of the recipe
   bool copy = false;           ///< the models, into `to`; else the recipe names where they lie
+  /// Without class files: "folders", all that a model lies in, or "folder", the first of them, as where each
+  /// model has one of its own.
+  std::string classes = "folders";
 };
 
 struct ImportResult {
@@ -23,7 +26,8 @@ struct ImportResult {
   std::uint64_t models = 0;
   std::map<std::string, std::uint64_t> splits;  ///< models of each; "" is none
   std::vector<std::string> classes;             ///< by id
-  std::vector<std::string> hierarchies;         ///< further classifications
+  std::vector<std::string> single;  ///< of these, where folders are classes, those of one model
+  std::vector<std::string> hierarchies;  ///< further classifications
   /// Files that cannot be used, and why: left out.
   std::vector<std::pair<std::string, std::string>> broken;
   std::vector<std::string> mended;        ///< models with damage that was mended

@@ -34,7 +34,7 @@ std::string recipe_text(const RecipeFacts& facts) {
   return fmt::format(
       R"(# Made by dsbuild import of {}.
 # See a small view of it first, and whether the models stand upright:
-#   dsbuild build recipe.toml -o preview --set 'camera.views=[1]' --set engine.error=0.2
+#   dsbuild build recipe.toml -o preview --set 'camera.views=[1]' --set engine.width=64 --set engine.height=64 --set engine.error=0.3
 # Every key: dsbuild help recipe
 
 [dataset]

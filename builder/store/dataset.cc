@@ -289,8 +289,8 @@ void check_recipe_is_there(const fs::path& folder, const fs::path& recipe) {
   fail(ErrorKind::recipe,
        "{0}: was built from the recipe {1}, which is no longer there; put it back, or hand the "
        "folder "
-       "over to it where it is now: dsbuild build RECIPE -o {0} --adopt (verify and log need no "
-       "recipe)",
+       "over to it where it is now: dsbuild build RECIPE -o {0} --adopt (verify, log, check, "
+       "gallery and export need no recipe)",
        folder.string(), recipe.string());
 }
 
@@ -300,6 +300,9 @@ std::string recipe_meant(const fs::path& folder) {
   std::error_code error;
   const fs::path beside = folder.string() + ".toml";
   if (fs::is_regular_file(beside, error)) return fmt::format(", did you mean {}?", beside.string());
+  // As dsbuild import names it, whatever else lies there.
+  const fs::path within = folder / "recipe.toml";
+  if (fs::is_regular_file(within, error)) return fmt::format(", did you mean {}?", within.string());
   std::vector<fs::path> recipes;
   for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator();
        entry.increment(error))

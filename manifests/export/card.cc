@@ -179,11 +179,10 @@ std::string body(const ExportInput& input, const ExporterType& type, const Expor
   if (const auto cite = dataset.about.find("cite"); cite != dataset.about.end())
     text += fmt::format("\n## How to cite\n\n```\n{}\n```\n", cite->second);
   text += fmt::format(
-      "\n## How it was made\n\nBy dsbuild {}, seed {}; `dsbuild build` makes the dataset's files "
-      "again "
-      "from this recipe and the same assets:\n\n```\n{}\n```\n\n`dsbuild verify FOLDER` compares "
-      "this "
-      "folder with its checksums.\n",
+      "\n## How it was made\n\nBy dsbuild {}, seed {}. Every setting of its recipe follows, with "
+      "files named but not where they lay: a record to compare with, no recipe that can be built. "
+      "That recipe, its class files and assets make the same files again.\n\n```\n{}\n```\n\n"
+      "`dsbuild verify FOLDER` compares this folder with its checksums.\n",
       dataset.dsbuild_version, dataset.seed, dataset.recipe_text);
   return text;
 }

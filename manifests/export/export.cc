@@ -264,6 +264,20 @@ std::string Export::values_of_filters() const {
   return text;
 }
 
+/// The keys of a recipe whose images have these kinds of files.
+std::string keys_for(const std::vector<const char*>& kinds) {
+  std::vector<std::string> keys, planes;
+  for (const std::string_view kind : kinds)
+    if (kind == "image")
+      keys.emplace_back("outputs.image = \"png\"");
+    else if (kind == "mask")
+      keys.emplace_back("outputs.mask = true");
+    else
+      planes.push_back(fmt::format("\"{}\"", kind));
+  if (!planes.empty()) keys.push_back(fmt::format("{} in outputs.planes", fmt::join(planes, ", ")));
+  return fmt::format("{}", fmt::join(keys, ", "));
+}
+
 void Export::check_found() const {
   if (result_.images == 0) {
     std::string why;
@@ -272,14 +286,15 @@ void Export::check_found() const {
     fail(ErrorKind::usage, "{}: no image to export{}{}", request_.folder.string(),
          why.empty() ? "" : fmt::format(" (left out: {})", why), values_of_filters());
   }
+  std::vector<const char*> lacking;
   for (const char* kind : type_->needs)
-    if (!input_.has(kind))
-      fail(ErrorKind::asset,
-           "{}: the format {} needs the file \"{}\" of every image, and the dataset has {}; build "
-           "it "
-           "with outputs.{} = true",
-           request_.folder.string(), type_->name, kind,
-           input_.kinds.empty() ? "none" : fmt::format("{}", fmt::join(input_.kinds, ", ")), kind);
+    if (!input_.has(kind)) lacking.push_back(kind);
+  if (!lacking.empty())
+    fail(ErrorKind::asset,
+         "{}: the format {} needs {} of every image, and the dataset has {}; build it with {}",
+         request_.folder.string(), type_->name, fmt::join(type_->needs, ", "),
+         input_.kinds.empty() ? "none" : fmt::format("{}", fmt::join(input_.kinds, ", ")),
+         keys_for(lacking));
 }
 
 void Export::add_key(const ImageRecord& image) {

@@ -198,6 +198,15 @@ class BuildTest(TinyCase):
         self.assertEqual((builds[0]["outcome"], builds[0]["built"]), ("done", IMAGES))
         self.assertRegex(builds[0]["started_at"], r"^\d{4}-\d\d-\d\d \d\d:\d\d:\d\d$")
 
+    def test_status_says_that_the_folder_was_built_otherwise(self):
+        self.build("--set", "engine.spp=2")
+        run = self.run_it("status", self.recipe, "-o", self.out)
+        self.assertIn(f"built with --set 'engine.spp=2': dsbuild status {self.out} looks at it with these", run.out)
+        for same in ([self.out], [self.recipe, "-o", self.out, "--set", "engine.spp=2"]):
+            run = self.run_it("status", *same)
+            self.assertNotIn("built with", run.out)
+            self.assertIn(f"{IMAGES} up to date", run.out)
+
     def test_manifest_names_no_time_no_device_and_no_path(self):
         self.build()
         text = "".join(path.read_text() for path in (self.out / "manifest").iterdir())

@@ -111,7 +111,7 @@ class ConcernsTest(TinyCase):
         self.assertEqual(self.concerns()[0], concerns)
         self.assertIn(wanted, self.run_it("plan", self.recipe, "-o", self.out).err)
         _, err = self.concerns("--strict", code=1)
-        self.assertIn("dsbuild: error: 1 of 4 materials and environments have values that no real surface has: red.mat", err)
+        self.assertIn("dsbuild: error: 1 of 4 materials and environments has values that no real surface has: red.mat", err)
 
     def test_a_bright_image_with_a_gain(self):
         def chunk(kind, data):
@@ -208,7 +208,7 @@ class ConcernsTest(TinyCase):
         self.edit("recipe.toml", "[materials]", '[classes]\ntrain = "train.cla"\ntest = "test.cla"\n\n[materials]')
         concerns, err = self.concerns()
         self.assertEqual(concerns, {**NONE, "entries_ambiguous": 1})
-        self.assertIn("1 of 3 entries of the class files mean several model files each", err)
+        self.assertIn("1 of 3 entries of the class files means several model files each", err)
         self.assertIn(": box (box.off, box.ply)", err)
         self.concerns("--strict", code=1)
         (self.tiny / "test.cla").write_text("PSB 1\n1 1\nsolid 0 1\nbox.ply\n")
@@ -224,7 +224,7 @@ class ConcernsTest(TinyCase):
         self.build()
         run = self.run_it("check", self.out)
         self.assertEqual(run.code, 1, run)
-        self.assertEqual(run.out.splitlines()[0], "error: leaks: 1 of 2 models are the same mesh in two splits: "
+        self.assertEqual(run.out.splitlines()[0], "error: leaks: 1 of 2 models is the same mesh in two splits: "
                          "twin.ply (test), tetra.ply (train) (keep all copies of a model in one split)")
         told = self.run_it("check", self.recipe, "-o", self.out, "--only", "leaks", "--json").json
         self.assertEqual((told["errors"], told["findings"][0]["count"]), (1, 1))
@@ -249,8 +249,8 @@ class ConcernsTest(TinyCase):
         concerns, err = self.concerns()
         self.assertEqual(concerns, {**NONE, "models_absent": 3, "models_unlisted": 1, "classes_empty": 1})
         self.assertIn("3 of 4 models that the class files list have no file: far, gone, lost", err)
-        self.assertIn("1 of 2 model files stand in no class file: tetra.ply", err)
-        self.assertIn("1 of 3 classes have no image: ship", err)
+        self.assertIn("1 of 2 model files stands in no class file: tetra.ply; built without a class: a line for each in ", err)
+        self.assertIn("1 of 3 classes has no image: ship", err)
         self.concerns("--strict", code=1)
         # What the recipe itself allows is said, and no error.
         allowed = ["--set", "classes.missing=ignore", "--set", "classes.unlisted=skip"]
@@ -258,6 +258,7 @@ class ConcernsTest(TinyCase):
         self.assertNotIn("warning: 3 of 4", err)
         self.assertNotIn("warning: 1 of 3", err)
         self.assertIn("3 of 4 models", err)
+        self.assertRegex(err, r"stands? in no class file: tetra.ply; left out: a line for each in \S+ mends it")
 
     def test_a_build_that_is_cut_short_counts_what_it_made(self):
         (self.tiny / "train.cla").write_text("PSB 1\n3 2\n\nbox 0 1\nbox\n\nsolid 0 1\ntetra\n\nship 0 0\n")
@@ -268,7 +269,7 @@ class ConcernsTest(TinyCase):
         concerns, err = self.concerns(code=1)
         self.assertEqual(concerns["classes_empty"], 2, err)  # box, which cannot be made, and ship
         self.assertIn("2 of 3 classes have no image: box, ship", err)
-        self.assertIn(f"not looked at: {IMAGES} of {IMAGES} images, which are not made", err)
+        self.assertIn(f"not looked at: {IMAGES} of {IMAGES} images, which this build did not make", err)
         concerns, err = self.concerns("-k", code=1)
         self.assertEqual(concerns["classes_empty"], 2, err)
         self.assertIn(f"not looked at: {IMAGES // 2} of {IMAGES} images", err)

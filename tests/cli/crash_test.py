@@ -46,6 +46,24 @@ class CrashTest(TinyCase):
                 shutil.rmtree(self.out)
         self.check()
 
+    def test_status_of_a_first_build_that_runs_or_was_killed(self):
+        process = self.start("build", self.recipe, "-o", self.out, "--set", "engine.spp=6000")
+        placed = self.out / "images/box.off/0.png"
+        while process.poll() is None and not placed.exists():
+            time.sleep(0.005)
+        time.sleep(0.3)  # what is placed is recorded
+        running = self.run_it("status", self.out).out
+        process.kill()
+        process.communicate()
+        self.assertEqual(process.returncode, -9, running)
+        self.assertRegex(running, rf"UTC, running, [1-{IMAGES}] of {IMAGES} images are made")
+        self.assertIn("manifest is written at the build's end", running)
+        self.assertNotIn("never written", running)
+        self.assertNotIn("0 built", running)
+        killed = self.run_it("status", self.out).out
+        self.assertRegex(killed, rf"UTC, killed before its end, [1-{IMAGES}] of {IMAGES} images are made")
+        self.assertNotIn("0 built", killed)
+
     def test_a_killed_build_is_told_of(self):
         self.build()
         process = self.start("build", self.recipe, "-o", self.out, "--set", "engine.spp=6000")

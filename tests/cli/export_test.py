@@ -322,8 +322,12 @@ class ExportTest(TinyCase):
         self.assertFalse(self.to.exists())
         self.build("--set", "outputs.mask=false")
         run = self.run_it("export", self.out, "--format", "coco", "-o", self.to)
-        self.assertIn('needs the file "mask" of every image, and the dataset has image; build it with '
+        self.assertIn('coco needs image, mask of every image, and the dataset has image; build it with '
                       'outputs.mask = true', run.err)
+        # All that is lacking at once, by keys that there are.
+        run = self.run_it("export", self.out, "--format", "bop", "-o", self.to)
+        self.assertIn('bop needs image, mask, amodal_mask, depth of every image, and the dataset has image; build it with '
+                      'outputs.mask = true, "amodal_mask", "depth" in outputs.planes', run.err)
         self.assertEqual([p.name for p in self.folder.iterdir() if p.name.startswith(".")], [])
 
     def test_a_dataset_that_is_behind_is_said_to_be(self):
@@ -334,6 +338,37 @@ class ExportTest(TinyCase):
         self.assertEqual(run.code, 0, run)
         self.assertIn("of 8 images are not as their recipe wants them", run.err)
         self.assertIn("of 8 images are not as their recipe wants them", (self.to / "README.md").read_text())
+
+    def test_the_card_calls_its_settings_a_record(self):
+        self.export("csv")
+        card = (self.to / "README.md").read_text()
+        self.assertIn("a record to compare with, no recipe that can be built", " ".join(card.split()))
+        # As it is: names without folders, classes by themselves.
+        settings = card.split("```")[-2]
+        self.assertIn('models.files = ["box.off", "tetra.ply"]', settings)
+        (self.folder / "card.toml").write_text(settings)
+        self.assertEqual(self.run_it("plan", self.folder / "card.toml").code, 2)
+
+    def test_a_dataset_that_is_not_finished(self):
+        half = self.folder / "half"
+        self.build("--shard", "1/2", out=half)
+        listed = len((half / "manifest/images.jsonl").read_text().splitlines())
+        self.assertTrue(0 < listed < IMAGES)
+        run = self.run_it("export", half, "--format", "csv", "-o", self.to)
+        self.assertEqual((run.code, self.to.exists()), (1, False), run)
+        self.assertIn(f"{IMAGES - listed} of {IMAGES} images are not made; dsbuild build makes them, and --partial", run.err)
+        run = self.run_it("export", half, "--format", "csv", "-o", self.to, "--partial", "--json")
+        self.assertEqual((run.code, run.json["images"]), (0, listed), run)
+        self.assertIn("images are not as their recipe wants them", run.err)
+        # What is handed on without its recipe is what it is.
+        shutil.rmtree(self.to)
+        shutil.rmtree(half / ".dsbuild")
+        self.assertEqual(self.run_it("export", half, "--format", "csv", "-o", self.to).code, 0)
+
+    def test_an_export_of_another_format_is_replaced_and_said_to_be(self):
+        for format, said in (("csv", False), ("csv", False), ("coco", True)):
+            run = self.run_it("export", self.out, "--format", format, "-o", self.to)
+            self.assertEqual((run.code, "the export as csv that stood there is replaced" in run.err), (0, said), run)
 
     def test_names_that_are_one_without_their_endings(self):
         shutil.copy(self.tiny / "models/box.off", self.tiny / "models/tetra.off")

@@ -60,6 +60,24 @@ class ImportTest(TinyCase):
         self.assertEqual({(m, c, i) for m, c, _, i in self.built()},
                          {("b.off", "car", 0), ("a.off", "car/suv", 1), ("c.ply", "chair", 2), ("loose.off", "", None)})
 
+    def test_a_folder_for_each_model(self):
+        files = {f"{kind}/{number}/model.off": self.box for kind in ("big car", "mug") for number in ("one", "two")}
+        self.put(files)
+        run = self.run_it("import", self.models, "-o", self.to)
+        self.assertEqual(run.code, 0, run)
+        self.assertIn("4 of 4 classes have one model, as big car/one: all folders that a model lies in are its class; "
+                      "with --classes folder the first of them is", run.err)
+        shutil.rmtree(self.to)
+        run = self.run_it("import", self.models, "-o", self.to, "--classes", "folder", "--json")
+        self.assertEqual((run.code, run.err, run.json["classes"]), (0, "", ["big car", "mug"]), run)
+        self.assertEqual({row[1] for row in self.rows()[1:]}, {"big car", "mug"})
+        # Classes below others that have several models are what was meant.
+        shutil.rmtree(self.to)
+        shutil.rmtree(self.models)
+        self.put({f"car/{kind}/{number}.off": self.box for kind in ("suv", "van") for number in ("one", "two")})
+        run = self.run_it("import", self.models, "-o", self.to)
+        self.assertEqual((run.code, "one model" in run.err), (0, False), run)
+
     def test_names_that_repeat_are_paths(self):
         self.put({"mug/1/model.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n",
                   "mug/2/model.obj": "v 0 0 0\nv 2 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"})
@@ -111,6 +129,10 @@ class ImportTest(TinyCase):
         run = self.run_it("import", self.models, "-o", self.to)
         self.assertEqual(run.code, 2)
         self.assertIn("holds a recipe.toml already", run.err)
+        (self.to / "classes.csv").write_text("name,class\n")
+        self.assertIn("or add the lines of new models to its classes.csv",
+                      self.run_it("import", self.models, "-o", self.to).err)
+        (self.to / "classes.csv").unlink()
         self.assertEqual((self.to / "recipe.toml").read_text(), "mine")
         (self.to / "recipe.toml").unlink()
         # An import that was cut short is done again.

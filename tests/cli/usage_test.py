@@ -130,7 +130,7 @@ class UsageTest(TinyCase):
                 (["--json", "plan", self.recipe], "--json stands before the verb: write dsbuild VERB --json"),
                 (["build"], "build: wanted a DATASET"),
                 (["diff"], "diff: wanted A"),
-                (["diff", self.recipe], "diff: wanted B"),
+                (["diff", self.recipe], "diff: wanted B, what A is to be compared with: another dataset, or an image file"),
                 (["build", self.recipe, "other"], "build: does not know what to do with other; it takes DATASET"),
                 (["explain", self.recipe, "box.off/0", "three", "four", "five"],
                  "explain: does not know what to do with three four five; it takes DATASET and IMAGE"),
@@ -193,6 +193,22 @@ class UsageTest(TinyCase):
             self.assertIn(message, run.err)
             self.assertEqual(run.err.count("\n"), 1, run)
             self.assertEqual(run.out.count("\n"), 1 if "--json" in arguments else 0, run)
+
+    def test_a_folder_that_is_no_dataset(self):
+        other = self.folder / "other"
+        other.mkdir()
+        for verb in (["verify"], ["gallery"], ["check"], ["export", "--format", "csv", "-o", self.folder / "csv"],
+                     ["diff", other]):
+            run = self.run_it(*verb, other)
+            self.assertEqual(run.code, 2, run)
+            self.assertIn(f"{other}: wanted ", run.err)
+        # One whose manifest is lost is a dataset, and something failed.
+        self.build()
+        (self.out / "manifest/images.jsonl").unlink()
+        self.assertEqual(self.run_it("check", self.out).code, 1)
+        # An imported folder's recipe is named whatever else lies beside it.
+        (self.tiny / "other.toml").write_text("")
+        self.assertIn(f"did you mean {self.recipe}?", self.run_it("build", self.tiny).err)
 
     def test_one_mistake_in_a_recipe_is_one_error(self):
         whole = self.recipe.read_text()
