@@ -8,7 +8,7 @@ import time
 
 from harness import IMAGES, TinyCase, main
 
-KILLS = int(os.environ.get("DSBUILD_TEST_KILLS", "15"))  # ci/deep long asks for more
+KILLS = int(os.environ.get("DSBUILD_TEST_KILLS", "8"))  # ci/deep long asks for more
 
 
 class CrashTest(TinyCase):
