@@ -9,21 +9,24 @@
 #include <limits>
 
 namespace ds {
+namespace {
 
-TiePlaces::Box TiePlaces::both(const Box& a, const Box& b) {
+Box3 both(const Box3& a, const Box3& b) {
   return {
       {std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y), std::min(a.low.z, b.low.z)},
       {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y), std::max(a.high.z, b.high.z)}};
 }
 
-bool TiePlaces::meet(const Box& a, const Box& b) {
-  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&
-         a.low.z <= b.high.z && b.low.z <= a.high.z;
-}
-
-double TiePlaces::half_surface(const Box& box) {
+double half_surface(const Box3& box) {
   const Vec3d d = box.high - box.low;
   return d.x * d.y + d.y * d.z + d.z * d.x;
+}
+
+}  // namespace
+
+bool meet(const Box3& a, const Box3& b) {
+  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&
+         a.low.z <= b.high.z && b.low.z <= a.high.z;
 }
 
 void TiePlaces::join_nearest() {
@@ -42,8 +45,8 @@ void TiePlaces::join_nearest() {
   boxes_.erase(boxes_.begin() + static_cast<std::ptrdiff_t>(second));
 }
 
-void TiePlaces::add(Vec3d low, Vec3d high) {
-  Box box{low, high};
+void TiePlaces::add(const Box3& added) {
+  Box3 box = added;
   for (std::size_t i = 0; i < boxes_.size();) {
     if (!meet(boxes_[i], box)) {
       ++i;
@@ -69,7 +72,7 @@ std::vector<TiePlace> TiePlaces::take() const {
     return double{rounded} >= v ? rounded : std::nextafter(rounded, k_far);
   };
   std::vector<TiePlace> places;
-  for (const Box& box : boxes_)
+  for (const Box3& box : boxes_)
     places.push_back({{below(box.low.x), below(box.low.y), below(box.low.z)},
                       {above(box.high.x), above(box.high.y), above(box.high.z)}});
   return places;

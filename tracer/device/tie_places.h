@@ -9,6 +9,13 @@
 namespace ds {
 
 /// A box, metres.
+struct Box3 {
+  Vec3d low, high;
+};
+/// Whether they have a point in common.
+bool meet(const Box3& a, const Box3& b);
+
+/// A box in floats, as kernels have it; metres.
 struct TiePlace {
   std::array<float, 3> low, high;
   friend bool operator==(const TiePlace&, const TiePlace&) = default;
@@ -19,21 +26,15 @@ struct TiePlace {
 /// own become one.
 class TiePlaces {
  public:
-  /// low <= high in every axis; metres.
-  void add(Vec3d low, Vec3d high);
+  /// low <= high in every axis.
+  void add(const Box3& added);
   /// Rounded outwards to floats.
   std::vector<TiePlace> take() const;
 
  private:
-  struct Box {
-    Vec3d low, high;
-  };
-  static Box both(const Box& a, const Box& b);
-  static bool meet(const Box& a, const Box& b);
-  static double half_surface(const Box& box);
   void join_nearest();
 
-  std::vector<Box> boxes_;
+  std::vector<Box3> boxes_;
 };
 
 }  // namespace ds

@@ -27,10 +27,6 @@ constexpr double k_parallel = 0.9991;
 /// Overlaps narrower than this share of the smaller triangle are neighbours' common edges.
 constexpr double k_overlap = 1e-3;
 
-struct Box3 {
-  Vec3d low, high;
-};
-
 /// A triangle as pairs are judged by.
 struct Face {
   std::array<Vec3d, 3> corner;
@@ -176,11 +172,6 @@ Box3 grown(const Box3& box, double by) {
   return {box.low - margin, box.high + margin};
 }
 
-bool meet(const Box3& a, const Box3& b) {
-  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&
-         a.low.z <= b.high.z && b.low.z <= a.high.z;
-}
-
 class PairFinder {
  public:
   PairFinder(const Scene& scene, std::span<const Corners> triangles, const Bvh& bvh)
@@ -302,8 +293,7 @@ class Marks {
     const Box3 both = {
         {std::max(p.low.x, q.low.x), std::max(p.low.y, q.low.y), std::max(p.low.z, q.low.z)},
         {std::min(p.high.x, q.high.x), std::min(p.high.y, q.high.y), std::min(p.high.z, q.high.z)}};
-    const Box3 place = grown(both, 1000 * error + 0.01 * greatest(both.high - both.low));
-    places_.add(place.low, place.high);
+    places_.add(grown(both, 1000 * error + 0.01 * greatest(both.high - both.low)));
   }
 
   Ties take() {

@@ -80,7 +80,7 @@ TEST(TiePlaces, HoldAllThatWasAddedInFewBoxes) {
     for (int i = 0; i < 200; ++i) {
       const Vec3d low{spread * u(random), spread * u(random), spread * u(random)};
       added.emplace_back(low, low + Vec3d{u(random), u(random), 0});
-      places.add(added.back().first, added.back().second);
+      places.add({added.back().first, added.back().second});
     }
     const std::vector<TiePlace> boxes = places.take();
     EXPECT_LE(boxes.size(), std::size_t{k_most_tie_places});
@@ -96,9 +96,9 @@ TEST(TiePlaces, HoldAllThatWasAddedInFewBoxes) {
 TEST(TiePlaces, StayApartWhereThereAreFew) {
   TiePlaces places;
   for (int i = 0; i < k_most_tie_places; ++i)
-    places.add({3.0 * i, 0, 0}, {3.0 * i + 1, 1, 0});
+    places.add({{3.0 * i, 0, 0}, {3.0 * i + 1, 1, 0}});
   EXPECT_EQ(places.take().size(), std::size_t{k_most_tie_places});
-  places.add({0.5, 0.5, 0}, {2, 2, 0});  // meets the first
+  places.add({{0.5, 0.5, 0}, {2, 2, 0}});  // meets the first
   const std::vector<TiePlace> boxes = places.take();
   EXPECT_EQ(boxes.size(), std::size_t{k_most_tie_places});
   EXPECT_EQ(boxes.back().high[0], 2);
