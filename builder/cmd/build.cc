@@ -191,6 +191,7 @@ void remove_mark(const Dataset& dataset) {
 }  // namespace
 
 int run_build(const Arguments& arguments) {
+  expect_signs_of_life(arguments.stall_seconds);
   check_options(arguments);
   const Wanted wanted = arguments.no_files ? Wanted::store : Wanted::files;
   const BuildOptions build_options{arguments.keep_going, arguments.force, arguments.copy, wanted,
@@ -239,7 +240,7 @@ int run_build(const Arguments& arguments) {
     // Only now: planning may be ended anywhere, and needs nobody to wait for it.
     const std::atomic<bool>& stop = stop_on_signal();
     Progress progress(arguments.keep_going);
-    WatchedObserver watched(progress, arguments.stall_seconds);
+    WatchedObserver watched(progress);
     result = execute(dataset, plan, inputs, build_options, disk, factory, watched, stop);
     told_before = progress.told();
   });

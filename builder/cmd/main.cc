@@ -67,6 +67,6 @@ int main(int count, char** arguments) {
     code = code == 0 ? 1 : code;
   }
   ds::die_of_stop_signal();
-  ds::tell_end_of_build();
+  ds::tell_end_of_build(code);
   return code;
 }

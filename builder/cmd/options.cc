@@ -235,10 +235,10 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
       verb.add_flag("--force", to.force, "trace every image again");
       return;
     case Option::stall:
-      add_number(
-          verb, "--stall", to.stall_seconds, {.least = 0, .most = 1e9},
-          "seconds without a sign of life after which an image is ended and tried once more, "
-          "as where the device crashed; 0: never [900]");
+      add_number(verb, "--stall", to.stall_seconds, {.least = 0, .most = 1e9},
+                 "seconds without a sign of life after which what builds is ended, and the image "
+                 "it was at "
+                 "tried once more, as where the device crashed; 0: never [900]");
       return;
     case Option::rehash:
       verb.add_flag("--rehash", to.rehash,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/supervisor.h"
 
+#include "builder/cmd/arguments.h"
 #include "builder/cmd/stop_signal.h"
 #include "tracer/base/streams.h"
 
@@ -18,21 +19,30 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <utility>
 
 namespace ds {
 namespace {
 
 /// More processes in a row that die without an image made are no image's fault.
 constexpr int k_most_in_vain = 10;
+/// Processes in a row that hang outside of images, before the build is given up.
+constexpr int k_most_idle = 2;
 
 /// Memory that both processes see. Only the one that builds writes, while it lives.
 struct WatchedState {
   std::atomic<std::uint64_t> beats;  ///< signs of life
   std::atomic<double> hang_seconds;
   std::atomic<bool> ended;  ///< it has told all it has to tell
-  std::atomic<std::uint64_t> to_make, built, traced, developed, samples;
+  std::atomic<int> code;    ///< its exit code, then
+  std::atomic<std::uint64_t> to_make, built, failed, traced, developed, samples;
   std::atomic<bool> in_image;
   char image[4096];  ///< its id, and a zero; longer ones are cut
+
+  /// Behind the last image it is at none: the manifest is written.
+  void leave_last_image() {
+    if (built + failed >= to_make) in_image = false;
+  }
 };
 
 WatchedState* g_shared = nullptr;
@@ -70,28 +80,49 @@ bool used_up_its_time(const rusage& use) {
   return static_cast<rlim_t>(use.ru_utime.tv_sec + use.ru_stime.tv_sec + 1) >= limit.rlim_max;
 }
 
+/// What a process has computed so far; 0 where the system does not tell.
+std::int64_t cpu_nanoseconds(pid_t process) {
+  clockid_t clock = {};
+  timespec time = {};
+  if (::clock_getcpuclockid(process, &clock) != 0 || ::clock_gettime(clock, &time) != 0) return 0;
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
 /// Waits for the process, passes on what it is told, and ends it where it hangs.
 struct Watch {
   pid_t process;
   sigset_t signals;
-  bool hung = false, told_to_stop = false;
+  bool hung = false;
+  int told = 0;  ///< the last signal that was passed on
   int status = 0;
   rusage use = {};
+  std::uint64_t beats = 0;
+  std::int64_t cpu = 0;
+
+  /// Within an image it tells how far it is, and a device's driver may compute for ever. Outside of
+  /// one it reads, hashes and waits for other builds, which takes as long as it takes: there what it
+  /// computes is a sign too.
+  bool shows_life() {
+    const bool beat = std::exchange(beats, g_shared->beats.load()) != beats;
+    const std::int64_t cpu_before = std::exchange(cpu, cpu_nanoseconds(process));
+    return beat || (!g_shared->in_image && cpu != cpu_before);
+  }
+
+  void pass_on(int signal) {
+    told = signal;
+    ::kill(process, signal);
+    ::kill(process, SIGCONT);  // one that is stopped would never hear of it
+  }
 
   void wait() {
     // A second at a time is counted, so that a process stopped with this one did not hang.
     double idle = 0;
-    std::uint64_t beats = g_shared->beats;
     while (::wait4(process, &status, WNOHANG, &use) != process) {
       constexpr timespec second = {1, 0};
       siginfo_t info = {};
       const int signal = ::sigtimedwait(&signals, &info, &second);
-      if (signal > 0 && signal != SIGCHLD) {
-        told_to_stop = true;
-        ::kill(process, signal);
-      }
-      if (const std::uint64_t now = g_shared->beats; now != beats || !g_shared->in_image) {
-        beats = now;
+      if (signal > 0 && signal != SIGCHLD) pass_on(signal);
+      if (shows_life()) {
         idle = 0;
       } else if (signal < 0 && errno == EAGAIN) {
         idle += 1;
@@ -103,19 +134,22 @@ struct Watch {
     }
   }
 
-  std::optional<Death> death() const {
+  /// How one ended that has told all: a driver may hang as the process goes.
+  std::optional<int> code() const {
+    if (hung && g_shared->ended) return g_shared->code;
+    if (WIFEXITED(status) && g_shared->ended) return WEXITSTATUS(status);
+    return std::nullopt;
+  }
+
+  Death death() const {
     if (hung)
-      return Death{fmt::format("showed no sign of life for {} s", g_shared->hang_seconds.load()),
-                   SIGKILL, 1};
+      return {fmt::format("showed no sign of life for {} s", g_shared->hang_seconds.load()), 0, 1};
     if (WIFSIGNALED(status)) {
       const int signal = WTERMSIG(status);
-      return Death{fmt::format("died of signal {} ({})", signal, ::strsignal(signal)), signal, 1};
+      return {fmt::format("died of signal {} ({})", signal, ::strsignal(signal)), signal, 1};
     }
-    if (!g_shared->ended)
-      return Death{
-          fmt::format("ended with exit code {} in the middle of its work", WEXITSTATUS(status)), 0,
-          std::max(1, WEXITSTATUS(status))};
-    return std::nullopt;
+    return {fmt::format("ended with exit code {} in the middle of its work", WEXITSTATUS(status)),
+            0, std::max(1, WEXITSTATUS(status))};
   }
 };
 
@@ -126,7 +160,7 @@ int end_as(const Death& death) {
 }
 
 void add_up() {
-  if (g_earlier.deaths == 0) g_earlier.to_make = g_shared->to_make;
+  if (g_earlier.to_make == 0) g_earlier.to_make = g_shared->to_make;
   g_earlier.traced += g_shared->traced;
   g_earlier.developed += g_shared->developed;
   g_earlier.samples += g_shared->samples;
@@ -145,27 +179,47 @@ int blame(const std::string& id, const std::string& how) {
   return ++known->times;
 }
 
+/// Processes in a row that came to nothing.
+struct InVain {
+  int crashed = 0;  ///< with an image, and made none
+  int idle = 0;     ///< hung before their first image, or behind their last
+};
+
+/// What follows on a process that hung outside of its images.
+std::optional<int> after_idling(const Death& death, InVain& in_vain) {
+  const bool again = ++in_vain.idle < k_most_idle;
+  say(Stream::people, "dsbuild: {}: the process that builds {} {}{}\n", again ? "warning" : "error",
+      death.how, g_shared->image[0] == '\0' ? "before its first image" : "behind its last image",
+      again ? "; another one goes on" : ", again");
+  if (!again) return end_as(death);
+  add_up();
+  ++g_earlier.deaths;
+  return std::nullopt;
+}
+
 /// What follows on a death: nothing where another process is to be begun, else how this one ends.
-std::optional<int> after(const Watch& watch, const Death& death, int& in_vain) {
+std::optional<int> after(const Watch& watch, const Death& death, InVain& in_vain) {
   const std::string id = g_shared->image;
-  const bool is_final = watch.told_to_stop || is_stop(death.signal) ||
-                        (death.signal == SIGKILL && !watch.hung && used_up_its_time(watch.use));
-  if (is_final) return end_as(death);
+  const bool out_of_time = death.signal == SIGKILL && used_up_its_time(watch.use);
+  if (watch.hung && watch.told != 0) return end_as({death.how, watch.told, 1});
+  if (watch.told != 0 || is_stop(death.signal) || out_of_time) return end_as(death);
+  if (::isatty(STDERR_FILENO) == 1) say(Stream::people, "\n");  // behind the line that moved
+  if (g_shared->built > 0) in_vain = {};
+  if (!g_shared->in_image && watch.hung) return after_idling(death, in_vain);
   if (!g_shared->in_image) {
     say(Stream::people, "dsbuild: error: the process that builds {}\n", death.how);
     return end_as(death);
   }
-  if (::isatty(STDERR_FILENO) == 1) say(Stream::people, "\n");  // behind the line that moved
   add_up();
-  in_vain = g_shared->built > 0 ? 0 : in_vain + 1;
+  if (g_shared->built == 0) ++in_vain.crashed;
   const bool again = blame(id, death.how) < k_most_crashes;
   say(Stream::people, "dsbuild: warning: {}: the process that made it {}{}\n", id, death.how,
       again ? "; it is tried once more" : ", again");
-  if (in_vain < k_most_in_vain) return std::nullopt;
+  if (in_vain.crashed < k_most_in_vain) return std::nullopt;
   say(Stream::people,
       "dsbuild: error: {} processes in a row died with no image made: it is not the images; is the "
       "device well (--device)?\n",
-      in_vain);
+      in_vain.crashed);
   return end_as(death);
 }
 
@@ -179,8 +233,10 @@ std::optional<int> watch_over_build() {
   sigset_t before;
   ::pthread_sigmask(SIG_BLOCK, &signals, &before);
   const pid_t watching = ::getpid();
-  for (int in_vain = 0;;) {
+  double hang_seconds = Arguments{}.stall_seconds;
+  for (InVain in_vain;;) {
     g_shared = new (memory) WatchedState{};
+    g_shared->hang_seconds = hang_seconds;
     const pid_t process = ::fork();
     if (process <= 0) {
       ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
@@ -195,9 +251,9 @@ std::optional<int> watch_over_build() {
     }
     Watch watch{process, signals};
     watch.wait();
-    const std::optional<Death> death = watch.death();
-    if (!death) return WEXITSTATUS(watch.status);
-    if (const std::optional<int> code = after(watch, *death, in_vain)) return code;
+    hang_seconds = g_shared->hang_seconds;
+    if (const std::optional<int> code = watch.code()) return code;
+    if (const std::optional<int> code = after(watch, watch.death(), in_vain)) return code;
   }
 }
 
@@ -205,21 +261,27 @@ EarlierProcesses earlier_processes() {
   return g_earlier;
 }
 
-void tell_end_of_build() {
-  if (g_shared != nullptr) g_shared->ended = true;
-}
-
-WatchedObserver::WatchedObserver(BuildObserver& observer, double hang_seconds)
-    : observer_(observer) {
+void expect_signs_of_life(double hang_seconds) {
   if (g_shared != nullptr) g_shared->hang_seconds = hang_seconds;
 }
+
+void tell_end_of_build(int code) {
+  if (g_shared == nullptr) return;
+  g_shared->code = code;
+  g_shared->ended = true;
+}
+
+WatchedObserver::WatchedObserver(BuildObserver& observer) : observer_(observer) {}
 
 WatchedObserver::~WatchedObserver() {
   if (g_shared != nullptr) g_shared->in_image = false;
 }
 
 void WatchedObserver::started(std::uint64_t images, std::uint64_t samples) {
-  if (g_shared != nullptr) g_shared->to_make = images;
+  if (g_shared != nullptr) {
+    g_shared->to_make = images;
+    g_shared->failed = 0;  // those that never began
+  }
   observer_.started(images, samples);
 }
 
@@ -247,12 +309,17 @@ void WatchedObserver::image_done(const PlannedImage& image, const ImageWork& wor
     g_shared->traced += work.traced ? 1U : 0U;
     g_shared->developed += work.developed ? 1U : 0U;
     g_shared->samples += work.samples;
+    g_shared->leave_last_image();
   }
   observer_.image_done(image, work);
 }
 
 void WatchedObserver::image_failed(const PlannedImage& image, const std::string& why) {
-  if (g_shared != nullptr) ++g_shared->beats;
+  if (g_shared != nullptr) {
+    ++g_shared->beats;
+    ++g_shared->failed;
+    g_shared->leave_last_image();
+  }
   observer_.image_failed(image, why);
 }
 

@@ -18,14 +18,16 @@ std::optional<int> watch_over_build();
 
 /// In the process that builds: what earlier ones came to. Empty where nobody watches.
 EarlierProcesses earlier_processes();
-/// In the process that builds: that it has told all it has to tell, whatever its exit code.
-void tell_end_of_build();
+/// In the process that builds: seconds without a sign of life after which it is taken to hang; 0: never.
+/// Before this is told it is the default of `--stall`.
+void expect_signs_of_life(double hang_seconds);
+/// In the process that builds: that it has told all it has to tell, and its exit code.
+void tell_end_of_build(int code);
 
 /// Tells the watching process what goes on, and passes it on.
 class WatchedObserver : public BuildObserver {
  public:
-  /// `hang_seconds`: an image that shows no sign of life for so long is taken to hang; 0: none is.
-  WatchedObserver(BuildObserver& observer, double hang_seconds);
+  explicit WatchedObserver(BuildObserver& observer);
   ~WatchedObserver() override;
 
   void started(std::uint64_t images, std::uint64_t samples) override;

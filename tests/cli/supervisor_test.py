@@ -86,6 +86,53 @@ class SupervisorTest(TinyCase):
                          "the process that made it showed no sign of life for 1 s, 2 times")
         self.assertEqual(self.run_it("build", self.recipe, "--stall", "-1").code, 2)
 
+    def stop_builders(self, process, times):
+        """Stops, one after another, the processes that build before their first image; how many came to be."""
+        state, seen = self.out / ".dsbuild/dsbuild.sqlite", set()
+        end = time.monotonic() + 120
+        while process.poll() is None and time.monotonic() < end:
+            children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+            for child in map(int, children):
+                if child not in seen and len(seen) < times and state.exists():
+                    os.kill(child, signal.SIGSTOP)
+                    seen.add(child)
+            time.sleep(0.001)
+        return len(seen)
+
+    def test_a_process_that_stops_before_its_first_image_is_ended(self):
+        process = self.start("build", self.recipe, "-o", self.out, "--stall", "2", "--json")
+        self.addCleanup(process.kill)
+        self.assertEqual(self.stop_builders(process, 1), 1)
+        out, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0, err)
+        self.assert_counts(json.loads(out), built=IMAGES + VIEWS, reused=0, failed=0, deaths=1)
+        self.assertIn("the process that builds showed no sign of life for 2 s before its first image; another one goes on",
+                      err)
+        self.assertEqual(self.run_it("verify", self.out).code, 0)
+
+    def test_a_process_that_always_stops_before_its_first_image_is_given_up(self):
+        process = self.start("build", self.recipe, "-o", self.out, "--stall", "1")
+        self.addCleanup(process.kill)
+        # The second is stopped as soon as it is there, before it can say what --stall was.
+        state = self.out / ".dsbuild/dsbuild.sqlite"
+        self.stop_builders(process, 2)
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 1, err)
+        self.assertTrue(state.exists())
+        self.assertIn("error: the process that builds showed no sign of life for 1 s before its first image, again", err)
+
+    def test_a_stopped_process_can_be_told_to_stop(self):
+        process = self.start("build", self.recipe, "-o", self.out)
+        self.addCleanup(process.kill)
+        while not (self.out / ".dsbuild/dsbuild.sqlite").exists():
+            time.sleep(0.001)
+        child = int(pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text())
+        os.kill(child, signal.SIGSTOP)
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=30)
+        self.assertEqual(process.returncode, -signal.SIGTERM)
+        self.assertEqual(self.others(), [])
+
     def test_a_device_that_crashes_at_everything_is_given_up(self):
         environment = {**self.environment("segv"), "DS_SHIM_BYTES": "1"}
         run = self.run_it("build", self.recipe, "-o", self.out, "-k", env=environment)
