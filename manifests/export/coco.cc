@@ -5,6 +5,8 @@
 #include "manifests/export/run_lengths.h"
 #include "manifests/json_text.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 namespace ds {

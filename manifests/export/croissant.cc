@@ -5,6 +5,8 @@
 #include "manifests/json_text.h"
 #include "manifests/licences.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 namespace ds {

@@ -5,6 +5,8 @@
 #include "manifests/export/exporter.h"
 #include "manifests/json_text.h"
 
+#include <fmt/format.h>
+
 namespace ds {
 namespace {
 

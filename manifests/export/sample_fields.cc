@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "manifests/export/sample_fields.h"
 
+#include <fmt/format.h>
+
 namespace ds {
 namespace {
 

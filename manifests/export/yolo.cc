@@ -6,6 +6,8 @@
 
 #include "manifests/json_text.h"
 
+#include <fmt/format.h>
+
 namespace ds {
 namespace {
 

@@ -4,6 +4,8 @@
 #include "manifests/export/outlines.h"
 #include "manifests/export/yolo.h"
 
+#include <fmt/format.h>
+
 #include <iterator>
 
 namespace ds {

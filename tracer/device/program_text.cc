@@ -5,6 +5,8 @@
 #include "tracer/kernels/layout.h"
 #include "tracer/scene/type_tables.h"
 
+#include <fmt/format.h>
+
 #include <span>
 #include <string_view>
 
