@@ -21,6 +21,9 @@ namespace ds {
 ///   classes_empty    classes of the class files, and classes above them, that no image is of
 ///   assets_unphysical  material files and environments with a surface that gives back more light
 ///                    than it gets, or another value that no real surface has
+///   assets_unlikely  material files and environments with something that is hardly meant: a thing that
+///                    nothing uses, a property that stands twice, no light at all, a texture that
+///                    reads what the mesh does not have
 ///   sizes_unlikely   images of lengths that hardly go together, as where one is in millimetres: the
 ///                    camera inside the model, the lens wider than it, ...
 ///   names_by_case    images whose name differs from another's in upper and lower case only: where a

@@ -38,6 +38,7 @@ constexpr ConcernText k_texts[] = {
     {"splits_empty", "splits have no image"},
     {"assets_unphysical", "materials and environments have values that no real surface has", "",
      true},
+    {"assets_unlikely", "materials and environments have something that is hardly meant", "", true},
     {"sizes_unlikely", "images are of lengths that hardly go together", "", true},
     {"names_by_case",
      "images have a name that differs from another's in upper and lower case only; on a disk that "

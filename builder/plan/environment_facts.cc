@@ -125,6 +125,7 @@ EnvironmentFacts facts_of(const Scene& environment) {
           std::any_of(environment.materials.begin(), environment.materials.end(),
                       [](const Material& material) { return !material.unphysical.empty(); }),
           environment.lost_faces,
+          environment.unlikely,
           largest_object_id,
           largest_material_id(environment),
           gain_changes_program(environment)};
@@ -142,6 +143,7 @@ std::string to_text(const EnvironmentFacts& facts, const std::vector<SourceFile>
                 {"longest_side_m", facts.longest_side_m},
                 {"unphysical", facts.unphysical},
                 {"lost_faces", facts.lost_faces},
+                {"unlikely", facts.unlikely},
                 {"largest_object_id", facts.largest_object_id},
                 {"largest_material_id", facts.largest_material_id},
                 {"gain_changes_program", facts.gain_changes_program}}
@@ -162,6 +164,7 @@ std::optional<EnvironmentFacts> facts_from_text(const std::string& text) {
                             object.at("longest_side_m").get<double>(),
                             object.at("unphysical").get<bool>(),
                             object.at("lost_faces").get<bool>(),
+                            object.at("unlikely").get<bool>(),
                             object.at("largest_object_id").get<std::uint32_t>(),
                             object.at("largest_material_id").get<std::uint32_t>(),
                             object.at("gain_changes_program").get<bool>()};

@@ -23,6 +23,7 @@ struct EnvironmentFacts {
   double longest_side_m = 0;  ///< of the box around its objects; 0 where it has none
   bool unphysical = false;    ///< a material of it gives back more light than it gets, or the like
   bool lost_faces = false;    ///< a mesh of it did when it was read
+  bool unlikely = false;      ///< something of its files is hardly meant (Scene::unlikely)
   std::uint32_t largest_object_id = 0, largest_material_id = 0;
   bool gain_changes_program = false;  ///< see vary.h
 };

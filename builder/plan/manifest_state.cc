@@ -217,9 +217,10 @@ void compare_concerns(std::vector<Concern> before, std::vector<Concern> after,
     behind.emplace_back("concerns: not counted by the version that wrote it");
     return;
   }
-  for (const char* name : {"models_absent", "models_unlisted", "classes_unshared",
-                           "assets_unphysical", "sizes_unlikely", "names_by_case", "meshes_damaged",
-                           "models_unlikely", "own_materials_partial"}) {
+  for (const char* name :
+       {"models_absent", "models_unlisted", "classes_unshared", "assets_unphysical",
+        "assets_unlikely", "sizes_unlikely", "names_by_case", "meshes_damaged", "models_unlikely",
+        "own_materials_partial"}) {
     const std::uint64_t old_count = concern(before, name).count;
     const std::uint64_t new_count = concern(after, name).count;
     if (old_count != new_count)

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <set>
 
 namespace ds {
@@ -270,28 +271,31 @@ Concern count_damaged(const std::vector<PlannedImage>& images, Inputs& inputs) {
   return concern;
 }
 
-/// Counts the files, whose findings were said when they were read.
-Concern count_unphysical(const std::vector<PlannedImage>& images, Inputs& inputs) {
-  Concern concern{"assets_unphysical", 0, 0, {}};
+/// Counts the files of which these are true; what was found was said when they were read.
+Concern count_assets(const char* name, const std::vector<PlannedImage>& images, Inputs& inputs,
+                     const std::function<bool(const Scene& material)>& of_material,
+                     bool EnvironmentFacts::*of_environment) {
+  Concern concern{name, 0, 0, {}};
   std::set<const void*> seen;  // the files' paths are long, and images many
   std::set<std::string> files;
-  const auto look = [&](const Shared<fs::path>& asset, const auto& is_unphysical) {
+  const auto look = [&](const Shared<fs::path>& asset, const auto& is_true) {
     if (!seen.insert(asset.identity()).second || !files.insert(asset->native()).second) return;
     ++concern.of;
-    if (is_unphysical()) add_example(concern, asset->filename().string());
+    if (is_true()) add_example(concern, asset->filename().string());
   };
   for (const PlannedImage& image : images) {
     if (image.error) continue;
     const ImageSpec& spec = image.spec;
-    look(spec.material_file, [&] {
-      const std::vector<Material>& parts = inputs.material(spec).materials;
-      return std::any_of(parts.begin(), parts.end(),
-                         [](const Material& material) { return !material.unphysical.empty(); });
-    });
+    look(spec.material_file, [&] { return of_material(inputs.material(spec)); });
     look(spec.environment_folder,
-         [&] { return inputs.environment_facts(spec.environment_folder).unphysical; });
+         [&] { return inputs.environment_facts(spec.environment_folder).*of_environment; });
   }
   return concern;
+}
+
+bool is_unphysical(const Scene& material) {
+  return std::any_of(material.materials.begin(), material.materials.end(),
+                     [](const Material& part) { return !part.unphysical.empty(); });
 }
 
 /// A to z only: which other letters are one depends on the file system.
@@ -427,12 +431,17 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard, Wanted
     plan.forgets = planner.forgets();
   }
   std::vector<std::string> unlikely;
-  plan.concerns = {count_unphysical(plan.images, inputs),
-                   find_unlikely_sizes(dataset.recipe, plan.images, inputs, unlikely),
-                   count_names_by_case(plan.images),
-                   count_damaged(plan.images, inputs),
-                   find_unlikely_properties(dataset.recipe, plan.images, inputs, unlikely),
-                   find_own_notes(plan.images, inputs, unlikely)};
+  plan.concerns = {
+      count_assets("assets_unphysical", plan.images, inputs, is_unphysical,
+                   &EnvironmentFacts::unphysical),
+      count_assets(
+          "assets_unlikely", plan.images, inputs,
+          [](const Scene& material) { return material.unlikely; }, &EnvironmentFacts::unlikely),
+      find_unlikely_sizes(dataset.recipe, plan.images, inputs, unlikely),
+      count_names_by_case(plan.images),
+      count_damaged(plan.images, inputs),
+      find_unlikely_properties(dataset.recipe, plan.images, inputs, unlikely),
+      find_own_notes(plan.images, inputs, unlikely)};
   for (const std::string& line : unlikely)
     warn(line);
   snapshot.reset();

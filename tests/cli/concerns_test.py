@@ -9,8 +9,8 @@ from harness import IMAGES, TinyCase, main
 
 NONE = {name: 0 for name in ("mask_empty", "mask_at_frame", "mask_small", "picture_black", "picture_white",
                              "models_absent", "models_unlisted", "entries_ambiguous", "classes_unshared",
-                             "classes_empty", "splits_empty", "assets_unphysical", "sizes_unlikely", "names_by_case", "meshes_damaged",
-                             "models_unlikely", "own_materials_partial")}
+                             "classes_empty", "splits_empty", "assets_unphysical", "assets_unlikely", "sizes_unlikely",
+                             "names_by_case", "meshes_damaged", "models_unlikely", "own_materials_partial")}
 
 
 def grey_png(path):
@@ -128,12 +128,28 @@ class ConcernsTest(TinyCase):
         bright = "red.mat:8: scene.materials.red.kd: wanted numbers in [0, 1], found a texture that goes up to 2 1.0"
         for _ in range(2):  # the second time out of the database's memory
             concerns, err = self.concerns()
-            self.assertEqual(concerns["assets_unphysical"], 1)
+            self.assertEqual((concerns["assets_unphysical"], concerns["assets_unlikely"]), (1, 1))
             self.assertEqual((err.count(twice), err.count(bright)), (1, 1), err)
         self.edit("materials/red.mat", "gain = 2", "gain = 1")
         concerns, err = self.concerns()
         self.assertEqual(concerns["assets_unphysical"], 0)
         self.assertNotIn("goes up to", err)
+
+    def test_assets_that_say_what_is_hardly_meant(self):
+        self.assertEqual(self.concerns()[0]["assets_unlikely"], 0)
+        with open(self.tiny / "materials/red.mat", "a", encoding="utf-8") as file:
+            file.write("scene.textures.stripes.type = checkerboard2d\n")
+        scene = self.tiny / "environments/plain/environment.scn"
+        before = scene.read_text()
+        scene.write_text(before + "scene.materials.spare.type = matte\n")
+        for _ in range(2):  # the second time out of the database's memory
+            concerns, err = self.concerns()
+            self.assertEqual(concerns["assets_unlikely"], 2, err)
+        self.assertEqual(err.count("scene.textures.stripes is used by nothing"), 1, err)
+        described = json.loads((self.out / "manifest/dataset.json").read_text())["concerns"]["assets_unlikely"]
+        self.assertEqual((described["count"], sorted(described["examples"])), (2, ["plain", "red.mat"]))
+        scene.write_text(before)
+        self.assertEqual(self.concerns()[0]["assets_unlikely"], 1)
 
     def test_lengths_in_millimetres(self):
         large = ["--set", "models.size_m=160"]

@@ -147,6 +147,7 @@ struct Scene {
   /// What was wrong with its objects' files, a line each; no part of a picture.
   std::vector<std::string> mended_meshes{};
   bool lost_faces = false;  ///< one of them did when it was read
+  bool unlikely = false;    ///< something of its files, of which was warned, is hardly meant
 };
 
 /// A camera, with an optional thin lens.

@@ -38,9 +38,10 @@ Scene read_material(const std::filesystem::path& file, const ContentOf& content_
   if (diagnostics.empty() && reader.scene.materials.empty())
     diagnostics.add({file.string()}, "wanted a material, found no scene.materials");
   diagnostics.throw_if_any();
-  warn_of_repeats(reader.properties);
-  warn_of_spare(reader, kinds);
+  bool unlikely = warn_of_repeats(reader.properties);
+  unlikely |= warn_of_spare(reader, kinds);
   Scene material = prune_to_last_material(std::move(reader.scene));
+  material.unlikely = unlikely;
   warn_of_materials(material);
   return material;
 }
@@ -74,9 +75,9 @@ Scene read_environment(const std::filesystem::path& folder,
   constexpr SdlKind k_film[] = {SdlKind::film};
   report_unused(film, k_film, "a film file");
   diagnostics.throw_if_any();
-  warn_of_repeats(reader.properties);
-  warn_of_repeats(film.properties);
-  warn_of_spare(reader, k_scene_kinds);
+  bool unlikely = warn_of_repeats(reader.properties);
+  unlikely |= warn_of_repeats(film.properties);
+  unlikely |= warn_of_spare(reader, k_scene_kinds);
   if (files != nullptr) {
     *files = std::move(reader.files);
     files->insert(files->end(), {scene_file, film_file});
@@ -85,7 +86,7 @@ Scene read_environment(const std::filesystem::path& folder,
   warn_of_materials(environment);
   for (const std::string& line : environment.mended_meshes)
     warn(line);
-  warn_of_environment(environment, folder.string());
+  environment.unlikely = warn_of_environment(environment, folder.string()) || unlikely;
   return environment;
 }
 

@@ -70,8 +70,8 @@ void report_unused(SdlReader& reader, std::span<const SdlKind> kinds, std::strin
 /// A finding for each thing without a type whose name looks like that of another, where one of the two
 /// is used by nothing ("scene.materials.redplastic.kd" beside "scene.materials.red-plastic.type").
 void report_slips(SdlReader& reader, std::span<const SdlKind> kinds);
-/// Warns of each thing that nothing uses: it changes no picture.
-void warn_of_spare(SdlReader& reader, std::span<const SdlKind> kinds);
+/// Warns of each thing that nothing uses: it changes no picture. Whether there is one.
+bool warn_of_spare(SdlReader& reader, std::span<const SdlKind> kinds);
 /// A section whose name is misspelt ("scene.material") is said once and read as what it means.
 void mend_section_names(SdlReader& reader);
 /// The known property that an unknown one of a thing seems to be meant for; "" where none is.

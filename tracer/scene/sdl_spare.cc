@@ -78,11 +78,13 @@ void report_slips(SdlReader& reader, std::span<const SdlKind> kinds) {
   }
 }
 
-void warn_of_spare(SdlReader& reader, std::span<const SdlKind> kinds) {
+bool warn_of_spare(SdlReader& reader, std::span<const SdlKind> kinds) {
+  bool any = false;
   for (const SdlKind kind : kinds) {
     const Things things(reader, kind);
     for (const std::string& name : things.names()) {
       if (!things.is_spare(name)) continue;
+      any = true;
       const std::string why =
           kind == SdlKind::material && !reader.environment
               ? fmt::format(": a material file is for its last material, {}", things.names().back())
@@ -91,6 +93,7 @@ void warn_of_spare(SdlReader& reader, std::span<const SdlKind> kinds) {
                        thing(kind, name), why));
     }
   }
+  return any;
 }
 
 }  // namespace ds

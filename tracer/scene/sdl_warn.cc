@@ -27,10 +27,11 @@ bool gives_light(const Scene& scene) {
 
 }  // namespace
 
-void warn_of_repeats(const PropertySet& properties) {
+bool warn_of_repeats(const PropertySet& properties) {
   for (const RepeatedProperty& repeated : properties.repeated())
     warn(fmt::format("{}: {} stands in line {} already: the last one counts",
                      to_string(repeated.last), repeated.name, repeated.first.line));
+  return !properties.repeated().empty();
 }
 
 void warn_of_materials(const Scene& scene) {
@@ -39,19 +40,25 @@ void warn_of_materials(const Scene& scene) {
       warn(line);
 }
 
-void warn_of_environment(const Scene& environment, const std::string& name) {
-  if (!gives_light(environment)) warn(fmt::format("{}: nothing in it gives light", name));
+bool warn_of_environment(const Scene& environment, const std::string& name) {
+  std::vector<std::string> lines;
+  if (!gives_light(environment))
+    lines.push_back(fmt::format("{}: nothing in it gives light", name));
   for (const Object& object : environment.objects) {
     const std::string& material =
         environment.materials[static_cast<std::size_t>(object.material)].name;
     const MeshExtras reads = reads_of(environment, object.material);
     if (reads.uvs && object.mesh.uvs.empty())
-      warn(fmt::format("{}: object {} has no uv, which its material {} reads", name, object.name,
-                       material));
+      lines.push_back(fmt::format("{}: object {} has no uv, which its material {} reads", name,
+                                  object.name, material));
     if (reads.colors && object.mesh.colors.empty())
-      warn(fmt::format("{}: object {} has no colours but white, which its material {} reads", name,
-                       object.name, material));
+      lines.push_back(
+          fmt::format("{}: object {} has no colours but white, which its material {} reads", name,
+                      object.name, material));
   }
+  for (const std::string& line : lines)
+    warn(line);
+  return !lines.empty();
 }
 
 }  // namespace ds

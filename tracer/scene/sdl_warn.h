@@ -8,12 +8,12 @@
 
 namespace ds {
 
-/// Warns of each property that stands in the file more than once.
-void warn_of_repeats(const PropertySet& properties);
+/// Warns of each property that stands in the file more than once. These tell whether there is one.
+bool warn_of_repeats(const PropertySet& properties);
 /// Warns of each input of its materials that is out of its physical range.
 void warn_of_materials(const Scene& scene);
 /// Warns of an environment that can be traced and is hardly meant so: one that gives no light, and
 /// objects whose material's textures read uv that their meshes do not have.
-void warn_of_environment(const Scene& environment, const std::string& name);
+bool warn_of_environment(const Scene& environment, const std::string& name);
 
 }  // namespace ds
