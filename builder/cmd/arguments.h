@@ -41,6 +41,7 @@ struct Arguments {
   bool adopt = false;
   bool copy = false;
   bool partial = false;
+  bool pictures = false;
   bool verbose = false;
   std::string shell, init_file;
   std::string store_task, older, size;
@@ -106,6 +107,7 @@ enum class Option {
   format,
   export_folder,
   partial,
+  pictures,
   gallery_folder,
   splits,
   hierarchy,

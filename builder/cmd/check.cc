@@ -4,10 +4,13 @@
 #include "builder/cmd/grammar.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/verbs.h"
+#include "builder/cmd/work_progress.h"
+#include "tracer/base/log.h"
 #include "tracer/base/streams.h"
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 
 namespace ds {
 namespace {
@@ -34,7 +37,24 @@ void print(const CheckFinding& finding) {
 
 int run_check(const Arguments& arguments) {
   const std::filesystem::path folder = dataset_folder(arguments.request());
-  const CheckInput input{read_dataset_manifest(folder), read_images_manifest(folder)};
+  CheckInput input{read_dataset_manifest(folder), read_images_manifest(folder)};
+  if (std::error_code error; !std::filesystem::is_directory(arguments.target, error)) {
+    std::string& settings = input.recipe_now.emplace();
+    for (const auto& [key, value] : read_recipe(arguments.target, arguments.overrides).settings)
+      settings += fmt::format("{} = {}\n", key, value);
+  }
+  std::uint64_t unreadable = 0;
+  const bool pictures = arguments.pictures || any_reads_pictures(arguments.only);
+  if (pictures) {
+    WorkProgress progress("pictures read");
+    input.pictures = read_picture_facts(
+        folder, input.images,
+        [&](const std::string& why) {
+          ++unreadable;
+          warn(why);
+        },
+        std::ref(progress));
+  }
   const std::vector<CheckFinding> findings = worst_first(run_checks(input, arguments.only));
   const auto count = [&](CheckLevel level) {
     return std::count_if(findings.begin(), findings.end(),
@@ -45,14 +65,19 @@ int run_check(const Arguments& arguments) {
     print_json({{"images", input.images.size()},
                 {"errors", errors},
                 {"warnings", warnings},
+                {"pictures_read", pictures},
+                {"unreadable", unreadable},
                 {"findings", to_json(findings)}});
   } else {
     for (const CheckFinding& finding : findings)
       print(finding);
-    say(Stream::result, "{} images checked: {} error{}, {} warning{}\n", input.images.size(),
-        errors, errors == 1 ? "" : "s", warnings, warnings == 1 ? "" : "s");
+    say(Stream::result, "{} images checked: {} error{}, {} warning{}{}\n", input.images.size(),
+        errors, errors == 1 ? "" : "s", warnings, warnings == 1 ? "" : "s",
+        pictures ? "" : "; --pictures reads the pictures, too");
+    if (unreadable > 0)
+      say(Stream::result, "of {} images the files could not be read\n", unreadable);
   }
-  return errors + warnings > 0 ? 1 : 0;
+  return errors + warnings + static_cast<std::ptrdiff_t>(unreadable) > 0 ? 1 : 0;
 }
 
 }  // namespace ds

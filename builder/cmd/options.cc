@@ -336,6 +336,10 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
           ->allow_extra_args(false)
           ->type_name("CHECK");
       return;
+    case Option::pictures:
+      verb.add_flag("--pictures", to.pictures,
+                    "read the pictures, too: near duplicates, contrast, fireflies");
+      return;
     case Option::report_file:
       verb.add_option("-o,--output", to.report_file,
                       "the report [NAME-accuracy.html]; its numbers go beside it, ending in .csv")

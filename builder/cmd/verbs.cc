@@ -32,7 +32,7 @@ const std::vector<Verb>& verbs() {
        run_verify},
       {"check",
        "look for what misleads a training: leaks, shortcuts, imbalance, bad masks and pictures",
-       {target, overrides, output_folder, only, json},
+       {target, overrides, output_folder, only, pictures, json},
        run_check},
       {"diff",
        "say which images of two datasets differ, in what, and how far their pixels are apart",

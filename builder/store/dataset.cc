@@ -5,6 +5,7 @@
 #include "builder/store/input_folders.h"
 #include "builder/store/slurm_mark.h"
 #include "builder/store/store_database.h"
+#include "builder/store/working_folder.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
 #include "tracer/base/hash_stream.h"
@@ -208,29 +209,6 @@ void check_unclaimed(const DatasetRequest& request, const fs::path& folder) {
            (folder / name).string(), pointer_path(folder).string());
 }
 
-/// Relative paths in overrides start from the folder the build was started in.
-class WorkingFolder {
- public:
-  explicit WorkingFolder(const fs::path& folder) : before_(fs::current_path()) {
-    std::error_code error;
-    fs::current_path(folder, error);
-    if (error)
-      fail(ErrorKind::io,
-           "{}: the folder the dataset was built from, where the paths of its --set start: {}; put "
-           "it back, or build the recipe again with -o and --set",
-           folder.string(), error.message());
-  }
-  ~WorkingFolder() {
-    std::error_code ignored;
-    fs::current_path(before_, ignored);
-  }
-  WorkingFolder(const WorkingFolder&) = delete;
-  WorkingFolder& operator=(const WorkingFolder&) = delete;
-
- private:
-  fs::path before_;
-};
-
 void open_store(Dataset& dataset, const fs::path& folder, const DatasetRequest& request,
                 Access access, Disk& disk) {
   dataset.store = std::make_unique<Store>(
@@ -310,13 +288,18 @@ std::string recipe_meant(const fs::path& folder) {
   return recipes.size() == 1 ? fmt::format(", did you mean {}?", recipes.front().string()) : "";
 }
 
-Dataset open_folder(const DatasetRequest& request, Access access, Disk& disk) {
+/// Throws where something is said that only a recipe in the folder's place could heed.
+void check_needs_no_recipe(const DatasetRequest& request) {
   if (!request.overrides.empty())
     fail(ErrorKind::usage,
          "--set needs a recipe, found the folder {}, which keeps the settings it was built with",
          request.target.string());
   if (!request.output_folder.empty())
     fail(ErrorKind::usage, "-o needs a recipe, found the folder {}", request.target.string());
+}
+
+Dataset open_folder(const DatasetRequest& request, Access access, Disk& disk) {
+  check_needs_no_recipe(request);
   Dataset dataset;
   dataset.folder = normal(request.target);
   dataset.lock_folder = lock_folder_of(request, dataset.folder);
@@ -465,7 +448,10 @@ bool holds_dataset(const fs::path& folder, const std::string& id) {
 
 fs::path dataset_folder(const DatasetRequest& request) {
   std::error_code error;
-  if (fs::is_directory(request.target, error)) return normal(request.target);
+  if (fs::is_directory(request.target, error)) {
+    check_needs_no_recipe(request);
+    return normal(request.target);
+  }
   const Recipe recipe = read_recipe(request.target, request.overrides);
   fs::path folder = folder_of(request, recipe);
   check_owner(request, folder, recipe, read_pointer(folder, true), nullptr);

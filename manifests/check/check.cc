@@ -28,17 +28,26 @@ std::string_view name_of(CheckLevel level) {
   assertion_failed("a CheckLevel", __FILE__, __LINE__);
 }
 
-std::string CheckInput::setting(std::string_view key) const {
+namespace {
+
+/// "random" of a line "materials.assign = random"; "" without such a line.
+std::string value_in(const std::string& text, std::string_view key) {
   const std::string line = fmt::format("{} = ", key);
-  const std::string& text = dataset.recipe_text;
   const std::size_t at = text.starts_with(line) ? 0 : text.find("\n" + line);
   if (at == text.npos) return "";
   const std::size_t from = at + line.size() + (at == 0 && text.starts_with(line) ? 0 : 1);
   return text.substr(from, text.find('\n', from) - from);
 }
 
+}  // namespace
+
+std::string CheckInput::setting(std::string_view key) const {
+  return value_in(dataset.recipe_text, key);
+}
+
 double CheckInput::threshold(const Threshold& threshold) const {
-  const std::string text = setting(fmt::format("check.{}", threshold.name));
+  const std::string text = value_in(recipe_now ? *recipe_now : dataset.recipe_text,
+                                    fmt::format("check.{}", threshold.name));
   double value = threshold.standard;
   const char* const end = text.data() + text.size();
   if (std::from_chars(text.data(), end, value).ptr != end || !threshold.range.contains(value))
@@ -77,6 +86,15 @@ std::vector<CheckFinding> worst_first(std::vector<CheckFinding> findings) {
   return findings;
 }
 
+bool any_reads_pictures(const std::vector<std::string>& names) {
+  return std::any_of(names.begin(), names.end(), [](const std::string& name) {
+    const auto all = checks();
+    return std::any_of(all.begin(), all.end(), [&](const Check& check) {
+      return check.reads_pictures && check.name == name;
+    });
+  });
+}
+
 std::vector<CheckFinding> run_checks(const CheckInput& input,
                                      const std::vector<std::string>& names) {
   std::vector<std::string_view> known;
@@ -90,6 +108,7 @@ std::vector<CheckFinding> run_checks(const CheckInput& input,
   for (const Check& check : checks()) {
     if (!names.empty() && std::find(names.begin(), names.end(), check.name) == names.end())
       continue;
+    if (check.reads_pictures && input.pictures.empty()) continue;
     CheckReport report(check.name);
     check.run(input, report);
     std::vector<CheckFinding> found = std::move(report).take();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "manifests/check/picture_facts.h"
 #include "manifests/manifest.h"
 #include "tracer/base/number_range.h"
 
@@ -46,12 +47,17 @@ struct Threshold {
   std::string_view help;  ///< as those of recipe keys
 };
 
-/// A dataset as its manifest tells it; all that is checked is known from there.
+/// A dataset as its manifest tells it, and its pictures where they were read.
 struct CheckInput {
   DatasetRecord dataset;
   std::vector<ImageRecord> images;  ///< ordered by id
+  /// Of each of the images (read_picture_facts); empty where no picture was read.
+  std::vector<std::optional<PictureFacts>> pictures{};
+  /// Settings of the recipe as it is now, of which the thresholds are taken; without it those are the
+  /// manifest's, too.
+  std::optional<std::string> recipe_now{};
 
-  /// As the recipe in the manifest sets it.
+  /// As the recipe sets it.
   double threshold(const Threshold& threshold) const;
   /// "random" of "materials.assign = random"; "" where the recipe in the manifest has no such key.
   std::string setting(std::string_view key) const;
@@ -83,12 +89,16 @@ struct Check {
   const char* help;  ///< one line
   void (*run)(const CheckInput& input, CheckReport& report);
   std::vector<Threshold> thresholds{};
+  bool reads_pictures = false;  ///< runs only where CheckInput::pictures are there
 };
 
 /// In alphabetical order.
 std::span<const Check> checks();
 
-/// Runs all of them, or those named. Error(usage) for a name that is none.
+/// Whether one of those named reads pictures.
+bool any_reads_pictures(const std::vector<std::string>& names);
+
+/// Runs all that can be with what is there, or those named. Error(usage) for a name that is none.
 std::vector<CheckFinding> run_checks(const CheckInput& input,
                                      const std::vector<std::string>& names);
 

@@ -1,43 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "manifests/diff/pixels.h"
 
+#include "manifests/image_samples.h"
 #include "tracer/base/error.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 
 namespace ds {
 namespace {
-
-/// Stored samples as numbers.
-class Samples {
- public:
-  explicit Samples(const DecodedImage& image) : image_(image) {
-    DS_ASSERT(image.type != SampleType::half);
-  }
-  double operator[](std::size_t i) const {
-    switch (image_.type) {
-      case SampleType::uint8:
-        return std::to_integer<int>(image_.samples[i]) / 255.0;
-      case SampleType::uint16:
-        return at<std::uint16_t>(i) / 65535.0;
-      default:
-        return double{at<float>(i)};
-    }
-  }
-
- private:
-  template <typename T>
-  T at(std::size_t i) const {
-    T value;
-    std::memcpy(&value, image_.samples.data() + i * sizeof(T), sizeof(T));
-    return value;
-  }
-
-  const DecodedImage& image_;
-};
 
 bool are_equal(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
@@ -61,7 +33,7 @@ std::string why_not_comparable(const DecodedImage& a, const DecodedImage& b) {
 
 PixelDifference pixel_difference(const DecodedImage& a, const DecodedImage& b) {
   DS_ASSERT(why_not_comparable(a, b).empty());
-  const Samples from(a), to(b);
+  const ImageSamples from(a), to(b);
   const auto channels = static_cast<std::size_t>(a.channels);
   PixelDifference found;
   found.of = pixels_of(a);
@@ -93,7 +65,7 @@ PixelDifference pixel_difference(const DecodedImage& a, const DecodedImage& b) {
 
 BytePicture difference_picture(const DecodedImage& a, const DecodedImage& b, double largest) {
   DS_ASSERT(why_not_comparable(a, b).empty());
-  const Samples from(a), to(b);
+  const ImageSamples from(a), to(b);
   BytePicture picture{a.width, a.height, a.channels < 3 ? 1 : 3, {}};
   const auto channels = static_cast<std::size_t>(a.channels);
   const auto shown = static_cast<std::size_t>(picture.channels);

@@ -34,6 +34,25 @@ class FolderTest(TinyCase):
         self.assertIn(done.returncode, (0, 1, 2), done)
         return done
 
+    def test_check_reads_pictures_where_it_is_asked_to(self):
+        self.build()
+        plain = self.run_it("check", self.out, "--json").json
+        self.assertEqual((plain["pictures_read"], plain["unreadable"]), (False, 0))
+        run = self.run_it("check", self.out, "--json", "--pictures")
+        self.assertEqual((run.json["pictures_read"], run.json["unreadable"]), (True, 0), run)
+        run = self.run_it("check", self.out, "--only", "contrast", "--set", "check.contrast_least=1")
+        self.assertEqual(run.code, 2, run)  # the folder keeps the settings it was built with
+        run = self.run_it("check", self.recipe, "-o", self.out, "--only", "contrast", "--set", "check.contrast_least=1")
+        self.assertEqual(run.code, 1, run)
+        self.assertIn("pictures show their model less than 1 apart", run.out)
+        (self.tiny / "recipe.toml").write_text(self.recipe.read_text() + "\n[check]\ncontrast_least = 1\n")
+        self.assertEqual(self.run_it("check", self.recipe, "-o", self.out, "--only", "contrast").code, 1)
+        self.assertEqual(self.run_it("check", self.out, "--only", "contrast").code, 0)  # not built since
+        os.unlink(self.out / "images/box.off/2.png")
+        run = self.run_it("check", self.out, "--json", "--only", "fireflies")
+        self.assertEqual((run.code, run.json["unreadable"], run.json["errors"]), (1, 1, 0), run)
+        self.assertIn("images/box.off/2.png", run.err)
+
     def test_a_folder_belongs_to_the_recipe_that_made_it(self):
         self.build()
         files = self.contents()
