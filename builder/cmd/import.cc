@@ -54,6 +54,9 @@ nlohmann::json to_json(const ImportResult& result) {
   nlohmann::json broken = nlohmann::json::array();
   for (const auto& [model, why] : result.broken)
     broken.push_back({{"model", model}, {"error", why}});
+  nlohmann::json own_broken = nlohmann::json::array();
+  for (const auto& [model, why] : result.own_broken)
+    own_broken.push_back({{"model", model}, {"error", why}});
   return {{"recipe", result.recipe.string()},
           {"models", result.models},
           {"splits", result.splits},
@@ -63,7 +66,9 @@ nlohmann::json to_json(const ImportResult& result) {
           {"broken", broken},
           {"mended", result.mended},
           {"missing", result.missing},
-          {"unclassified", result.unclassified}};
+          {"unclassified", result.unclassified},
+          {"own_materials", result.own},
+          {"own_materials_broken", own_broken}};
 }
 
 /// A folder for each model, as ShapeNet has them, is hardly a class of its own.
@@ -103,6 +108,10 @@ int run_import(const Arguments& arguments) {
   print_some("mended (dsbuild models tells what)", result.mended);
   print_some("in class files, without a file here", result.missing);
   print_some("without a class", result.unclassified);
+  print_some("with materials of their own (materials.assign = \"own\" shows them)", result.own);
+  for (std::size_t i = 0; i < std::min(result.own_broken.size(), k_shown); ++i)
+    say(Stream::result, "own materials of {} cannot be shown: {}\n", result.own_broken[i].first,
+        result.own_broken[i].second);
   std::string splits;
   for (const auto& [split, count] : result.splits)
     if (!split.empty()) splits += fmt::format(", {} {}", count, split);

@@ -7,8 +7,10 @@
 #include "builder/recipe/value.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
+#include "tracer/base/log.h"
 #include "tracer/base/parallel.h"
 #include "tracer/scene/mesh.h"
+#include "tracer/scene/own_materials.h"
 
 #include <algorithm>
 #include <map>
@@ -65,7 +67,33 @@ Recipe read_folder(const fs::path& from, const std::string& classes,
 struct Looked {
   std::optional<std::string> error;
   bool mended = false;
+  bool own = false;                      ///< it has materials of its own
+  std::optional<std::string> own_error;  ///< why they cannot be shown
 };
+
+/// Files that its own materials are in, but for its own.
+std::vector<fs::path> own_files(const fs::path& model, const OwnMaterials& own) {
+  std::vector<fs::path> files = own_material_files(model);
+  for (const OwnImage& image : own.images)
+    if (image.embedded < 0) files.push_back(image.file);
+  return files;
+}
+
+void look_at_own(const fs::path& model, Looked& looked) {
+  try {
+    const OwnMaterials own = read_own_materials(model);
+    if (own.materials.empty()) return;
+    for (const fs::path& file : own_files(model, own)) {
+      std::error_code error;
+      if (!fs::is_regular_file(file, error))
+        fail(ErrorKind::asset, "{}: wanted an image of its own materials, found no file",
+             file.string());
+    }
+    looked.own = true;
+  } catch (const Error& error) {
+    looked.own_error = error.what();
+  }
+}
 
 std::vector<Looked> look_at(const std::vector<ModelFile>& models,
                             const std::function<void(std::uint64_t, std::uint64_t)>& progress,
@@ -77,7 +105,10 @@ std::vector<Looked> look_at(const std::vector<ModelFile>& models,
     for (std::size_t i = begin; i < end; ++i) {
       if (stop) fail(ErrorKind::cancelled, "stopped; no recipe is written");
       try {
-        looked[i].mended = !mended_damage(read_model(models[i].file).report).empty();
+        const Model model = read_model(models[i].file);
+        looked[i].mended = !mended_damage(model.report).empty();
+        if (model.report.unused_materials > 0 || !model.mesh.materials.empty())
+          look_at_own(models[i].file, looked[i]);
       } catch (const Error& error) {
         looked[i].error = error.what();
       }
@@ -127,6 +158,11 @@ class Import {
         continue;
       }
       if (looked[i].mended) result_.mended.push_back(model.below);
+      if (looked[i].own_error) result_.own_broken.emplace_back(model.below, *looked[i].own_error);
+      if (looked[i].own) {
+        result_.own.push_back(model.below);
+        own_.insert(&model);
+      }
       good_.push_back(&model);
     }
     if (good_.empty())
@@ -146,6 +182,7 @@ class Import {
   void check_free() const;
   void write_classes();
   void write_hierarchies();
+  void copy_own(const fs::path& model, const fs::path& to) const;
   void copy_models() const;
   void copy_assets() const;
 
@@ -153,6 +190,7 @@ class Import {
   const Recipe& recipe_;
   bool has_files_;  ///< classes come from class files, not from folders
   std::vector<const ModelFile*> good_;
+  std::set<const ModelFile*> own_;  ///< with materials of their own
   bool by_path_ = false;
   ImportResult result_;
 };
@@ -210,6 +248,20 @@ void Import::write_hierarchies() {
   }
 }
 
+/// Those beside the model or below `from`: what lies elsewhere is not part of what was handed over.
+void Import::copy_own(const fs::path& model, const fs::path& to) const {
+  for (const fs::path& file : own_files(model, read_own_materials(model))) {
+    const fs::path beside = file.lexically_relative(model.parent_path());
+    const fs::path copy = (to.parent_path() / beside).lexically_normal();
+    const fs::path below = copy.lexically_relative(place("models").lexically_normal());
+    if (beside.empty() || below.empty() || *below.begin() == "..")
+      warn(fmt::format("{}: not copied: it lies outside of {}", file.string(),
+                       request_.from.string()));
+    else
+      copy_file_atomic(file, copy);
+  }
+}
+
 void Import::copy_models() const {
   std::set<fs::path> folders;
   for (const ModelFile* model : good_) {
@@ -217,6 +269,7 @@ void Import::copy_models() const {
     copy_file_atomic(model->file, to);
     for (const fs::path& part : model_parts(model->file))
       copy_file_atomic(part, to.parent_path() / part.lexically_relative(model->file.parent_path()));
+    if (own_.contains(model)) copy_own(model->file, to);
     // What a licence beside it says holds of the copy too.
     if (!folders.insert(model->file.parent_path()).second) continue;
     std::error_code error;
@@ -262,15 +315,18 @@ ImportResult Import::write() {
   write_hierarchies();
   copy_assets();
   if (request_.copy) copy_models();
-  RecipeFacts facts{dataset_name(request_.to),
-                    request_.from.filename().empty()
-                        ? request_.from.parent_path().filename().string()
-                        : request_.from.filename().string(),
-                    request_.copy ? "models" : fs::canonical(request_.from).string(),
-                    by_path_,
-                    !result_.classes.empty(),
-                    result_.splits.size() > 1 || !result_.splits.contains(""),
-                    {}};
+  RecipeFacts facts{
+      dataset_name(request_.to),
+      request_.from.filename().empty() ? request_.from.parent_path().filename().string()
+                                       : request_.from.filename().string(),
+      request_.copy ? "models" : fs::canonical(request_.from).string(),
+      by_path_,
+      !result_.classes.empty(),
+      result_.splits.size() > 1 || !result_.splits.contains(""),
+      {},
+      own_.empty()                  ? ""
+      : own_.size() == good_.size() ? "The models"
+                                    : fmt::format("{} of {} models", own_.size(), good_.size())};
   for (const std::string& name : result_.hierarchies)
     facts.more.push_back("more/" + name + ".csv");
   result_.models = good_.size();

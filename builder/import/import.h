@@ -33,13 +33,18 @@ struct ImportResult {
   std::vector<std::string> mended;        ///< models with damage that was mended
   std::vector<std::string> missing;       ///< in class files, and no file here
   std::vector<std::string> unclassified;  ///< models without a class
+  std::vector<std::string>
+      own;  ///< models with materials of their own, all files of which are there
+  /// Models whose own materials cannot be shown, and why: they are none of `own`.
+  std::vector<std::pair<std::string, std::string>> own_broken;
 };
 
 /// Writes a recipe for a folder of models, and what it needs: classes.csv, ids.txt, more/*.csv of
 /// further classifications, and the shipped materials and environments. Every model is read. Where
 /// `from` holds class files (.cla), as the Princeton Shape Benchmark does, classes and splits are theirs
 /// (of several classifications "base" comes first, or else that of most classes, and the others are
-/// further ones); else a model's class are the folders it lies in. The recipe is written last; an import
+/// further ones); else a model's class are the folders it lies in. With `copy`, what models' own
+/// materials are in goes with them, where it lies in `from`. The recipe is written last; an import
 /// that was cut short is done again. Throws Error(usage) where `from` holds no model or `to` is taken,
 /// Error(asset) where no model can be used, Error(cancelled) once `stop`. `progress`: models read of all.
 ImportResult import_models(const ImportRequest& request,

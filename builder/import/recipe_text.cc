@@ -55,7 +55,7 @@ centre = "mass"
 [materials]
 dir = "materials"
 assign = "random"
-
+{}
 [environments]
 dir = "environments"
 assign = "cycle"
@@ -76,7 +76,12 @@ image = "png"
 mask = true
 )",
       to_toml(facts.from), to_toml(facts.name), to_toml(facts.models_dir),
-      facts.names_by_path ? "path" : "file", classes_text(facts));
+      facts.names_by_path ? "path" : "file", classes_text(facts),
+      facts.own.empty()
+          ? ""
+          : fmt::format("# {} have materials of their own: assign = \"own\" in place of these two "
+                        "lines shows them\n",
+                        facts.own));
 }
 
 }  // namespace ds

@@ -15,6 +15,7 @@ struct RecipeFacts {
   bool has_classes = false;       ///< classes.csv and ids.txt lie beside it
   bool has_splits = false;        ///< classes.csv has them
   std::vector<std::string> more;  ///< files of further classifications
+  std::string own;                ///< which models have materials of their own; "": none
 };
 
 /// A recipe with a comment for each choice that is likely to be changed.

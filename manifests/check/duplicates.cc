@@ -20,12 +20,13 @@ void check_duplicates(const CheckInput& input, CheckReport& report) {
       }
   std::vector<std::string> within, across;
   std::set<Hash128> in_one, in_several;
-  for (const auto& [pixels, images] : same) {
+  for (const auto& entry : same) {
+    const std::vector<const ImageRecord*>& images = entry.second;
     if (images.size() < 2) continue;
     const bool one_split = std::all_of(images.begin(), images.end(), [&](const ImageRecord* image) {
       return image->split == images[0]->split;
     });
-    (one_split ? in_one : in_several).insert(pixels);
+    (one_split ? in_one : in_several).insert(entry.first);
     for (std::size_t i = 1; i < images.size(); ++i)
       (one_split ? within : across).push_back(images[i]->id + " as " + images[0]->id);
   }

@@ -3,6 +3,8 @@
 import csv
 import json
 import shutil
+import struct
+import zlib
 
 from harness import TinyCase, main
 
@@ -59,6 +61,30 @@ class ImportTest(TinyCase):
         self.assertEqual((self.to / "ids.txt").read_text(), "car\ncar/suv\nchair\n")
         self.assertEqual({(m, c, i) for m, c, _, i in self.built()},
                          {("b.off", "car", 0), ("a.off", "car/suv", 1), ("c.ply", "chair", 2), ("loose.off", "", None)})
+
+    def test_materials_of_their_own_are_proposed_and_copied(self):
+        square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+        faces = "usemtl paint\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n"
+        # One red pixel: PNG by the format's definition.
+        chunks = [(b"IHDR", struct.pack(">IIBBBBB", 1, 1, 8, 2, 0, 0, 0)), (b"IDAT", zlib.compress(b"\0\xff\0\0")), (b"IEND", b"")]
+        png = b"\x89PNG\r\n\x1a\n" + b"".join(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+                                             for kind, data in chunks)
+        self.put({"a/one.obj": "mtllib one.mtl\n" + square + faces, "a/one.mtl": "newmtl paint\nmap_Kd ../maps/red.png\n",
+                  "b/two.obj": "mtllib gone.mtl\n" + square + faces, "c/plain.off": self.box})
+        (self.models / "maps").mkdir()
+        (self.models / "maps/red.png").write_bytes(png)
+        told = self.take_in(self.models, "--copy")
+        self.assertEqual(told["own_materials"], ["a/one.obj"])
+        self.assertEqual([entry["model"] for entry in told["own_materials_broken"]], ["b/two.obj"])
+        self.assertIn("gone.mtl", told["own_materials_broken"][0]["error"])
+        recipe = (self.to / "recipe.toml").read_text()
+        line = '# 1 of 3 models have materials of their own: assign = "own" in place of these two lines shows them\n'
+        self.assertIn('dir = "materials"\nassign = "random"\n' + line, recipe)
+        shutil.rmtree(self.models)  # the copy is whole
+        (self.to / "recipe.toml").write_text(recipe.replace('dir = "materials"\nassign = "random"\n' + line, 'assign = "own"\n'))
+        run = self.run_it("build", self.to / "recipe.toml", "-o", self.out, "--json", "-k", *SMALL)
+        self.assertEqual((run.code, run.json["built"], run.json["failed"]), (1, 2, 1), run)
+        self.assertIn("gone.mtl", run.err)
 
     def test_a_folder_for_each_model(self):
         files = {f"{kind}/{number}/model.off": self.box for kind in ("big car", "mug") for number in ("one", "two")}
