@@ -139,10 +139,12 @@ constexpr std::array k_own_keys = {
         "What is split: all images of a model (material, ...) stay together, chosen by a hash of "
         "dataset.seed and its name; of two materials, environments or views or more one at least "
         "is in each split"},
-    KeySpec{"classes.split.stratified", manifest, boolean, "", "false", k_any, "",
-            R"(classes.split.by = "model")",
-            "Each class that has two models or more has one at least in each split: where all its "
-            "hashes are on one side, the nearest goes over"},
+    KeySpec{
+        "classes.split.stratified", manifest, boolean, "", "false", k_any, "",
+        R"(classes.split.by = "model")",
+        "Each class that has two models or more has one at least in each split: where all its "
+        "hashes are on one side, the nearest goes over. Each fold of split.folds has as many of "
+        "it as any other, give or take one"},
     KeySpec{"classes.split.held_out", manifest, text_list, "", "", k_any, "", "",
             "Names of the models, materials, environments or views (split.by) that are the test "
             "split, in place of a share"},

@@ -8,6 +8,7 @@
 #include <initializer_list>
 #include <set>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace ds {
@@ -87,10 +88,34 @@ void check_companions(Settings& settings, const Recipe& recipe) {
                       "has no effect without classes.split.test, classes.split.held_out or "
                       "classes.split.folds");
   if (!recipe.split.stratified) return;
-  if (!given({"classes.split.test"}))
-    settings.complain("classes.split.stratified", "has no effect without classes.split.test");
+  if (!given({"classes.split.test", "classes.split.folds"}))
+    settings.complain("classes.split.stratified",
+                      "has no effect without classes.split.test or classes.split.folds");
   else if (recipe.labels.size() == 0 && settings.diagnostics().empty())
     settings.complain("classes.split.stratified", "= true wants classes: classes.from names them");
+}
+
+/// Moves as few as make all folds as large, give or take one.
+void even_out(std::vector<std::vector<std::pair<double, std::string>>>& folds) {
+  std::size_t all = 0;
+  std::vector<std::size_t> by_size(folds.size());
+  for (std::size_t fold = 0; fold < folds.size(); ++fold) {
+    std::sort(folds[fold].begin(), folds[fold].end());
+    all += folds[fold].size();
+    by_size[fold] = fold;
+  }
+  std::stable_sort(by_size.begin(), by_size.end(),
+                   [&](std::size_t a, std::size_t b) { return folds[a].size() > folds[b].size(); });
+  std::vector<std::size_t> wanted(folds.size(), all / folds.size());
+  for (std::size_t i = 0; i < all % folds.size(); ++i)
+    ++wanted[by_size[i]];
+  std::vector<std::pair<double, std::string>> spare;
+  for (std::size_t fold = 0; fold < folds.size(); ++fold)
+    for (; folds[fold].size() > wanted[fold]; folds[fold].pop_back())
+      spare.push_back(std::move(folds[fold].back()));
+  for (std::size_t fold = 0; fold < folds.size(); ++fold)
+    for (; folds[fold].size() < wanted[fold]; spare.pop_back())
+      folds[fold].push_back(std::move(spare.back()));
 }
 
 }  // namespace
@@ -158,6 +183,35 @@ Splits::Splits(const Recipe& recipe) : recipe_(recipe) {
     for (const auto& [path, group] : groups)
       enter(group, !by_model || (split.stratified && !path.empty()));
   }
+  if (split.stratified && split.folds > 0) enter_folds();
+}
+
+/// In [0, 1).
+double Splits::fold_place(const std::string& thing) const {
+  return unit_interval(seeded_hash(recipe_.seed, k_for_fold, {name_of(recipe_.split.by), thing}));
+}
+
+std::uint64_t Splits::fold_by_hash(const std::string& thing) const {
+  const auto folds = static_cast<std::uint64_t>(recipe_.split.folds);
+  return std::min(static_cast<std::uint64_t>(fold_place(thing) * static_cast<double>(folds)),
+                  folds - 1);
+}
+
+void Splits::enter_folds() {
+  std::map<std::string, std::vector<std::vector<std::pair<double, std::string>>>> classes;
+  for (const ModelFile& model : recipe_.models) {
+    const ModelLabel label = of_model(model.name);
+    if (label.split == "test") continue;
+    auto& folds = classes[label.class_path];
+    folds.resize(static_cast<std::size_t>(recipe_.split.folds));
+    folds[fold_by_hash(model.name)].emplace_back(fold_place(model.name), model.name);
+  }
+  for (auto& [path, folds] : classes) {
+    even_out(folds);
+    for (std::size_t fold = 0; fold < folds.size(); ++fold)
+      for (const auto& [at, thing] : folds[fold])
+        fold_of_[thing] = fold;
+  }
 }
 
 ModelLabel Splits::of_model(const std::string& model) const {
@@ -174,11 +228,9 @@ std::string Splits::of_image(const ModelLabel& label, const std::string& thing) 
 
 std::optional<std::uint64_t> Splits::fold(const std::string& split,
                                           const std::string& thing) const {
-  const auto folds = static_cast<std::uint64_t>(recipe_.split.folds);
-  if (folds == 0 || split == "test") return std::nullopt;
-  const double at =
-      unit_interval(seeded_hash(recipe_.seed, k_for_fold, {name_of(recipe_.split.by), thing}));
-  return std::min(static_cast<std::uint64_t>(at * static_cast<double>(folds)), folds - 1);
+  if (recipe_.split.folds == 0 || split == "test") return std::nullopt;
+  const auto at = fold_of_.find(thing);
+  return at != fold_of_.end() ? at->second : fold_by_hash(thing);
 }
 
 }  // namespace ds

@@ -20,6 +20,10 @@ void read_split(Settings& settings, Recipe& recipe);
 /// other. Where chance leaves a group without train or without test and it has two or more, the one whose
 /// hash is nearest to the other side goes over. A group is a class with classes.split.stratified; it is all
 /// there are of materials, environments or views, which are few; models alone are in no group.
+///
+/// Folds are by another hash; with classes.split.stratified those of a class that are not test are as many
+/// in each fold as in any other, give or take one: of folds that have too many the last by that hash go
+/// where there are too few.
 class Splits {
  public:
   /// The recipe must outlive it.
@@ -35,10 +39,14 @@ class Splits {
 
  private:
   double place(const std::string& thing) const;
+  double fold_place(const std::string& thing) const;
+  std::uint64_t fold_by_hash(const std::string& thing) const;
   void enter(const std::map<std::string, double>& group, bool both);
+  void enter_folds();
 
   const Recipe& recipe_;
-  std::map<std::string, bool> is_test_;  ///< by thing
+  std::map<std::string, bool> is_test_;           ///< by thing
+  std::map<std::string, std::uint64_t> fold_of_;  ///< by thing, where not by hash alone
 };
 
 }  // namespace ds

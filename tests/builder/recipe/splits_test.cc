@@ -6,7 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -146,6 +148,77 @@ TEST(Splits, FoldsAreOfAllButTest) {
   }
 }
 
+/// Folds by model.
+std::map<std::string, std::uint64_t> folds_of(const Recipe& recipe) {
+  std::map<std::string, std::uint64_t> folds;
+  for (const ImageSpec& image : expand(recipe))
+    if (image.fold) folds[image.model_name] = *image.fold;
+  return folds;
+}
+
+TEST(Splits, StratifiedFoldsHaveOfEachClassAsManyGiveOrTakeOne) {
+  Recipe recipe = recipe_of(23);
+  for (const int folds : {2, 5, 10}) {
+    recipe.split.folds = folds;
+    for (const std::optional<double> test : {std::optional<double>(), std::optional(0.3)}) {
+      recipe.split.test = test;
+      recipe.split.stratified = false;
+      const auto plain = folds_of(recipe);
+      recipe.split.stratified = true;
+      std::map<std::string, std::map<std::uint64_t, int>> counts;
+      int moved = 0;
+      for (const auto& [model, fold] : folds_of(recipe)) {
+        ++counts[recipe.labels.find(model)->class_path][fold];
+        const auto before = plain.find(model);
+        moved += before != plain.end() && before->second != fold ? 1 : 0;
+      }
+      EXPECT_GT(moved, 0);
+      EXPECT_LT(moved, 100) << "of 276: what hash gives is kept where it can be";
+      for (const auto& [path, of_fold] : counts) {
+        int all = 0, least = of_fold.begin()->second, most = 0;
+        for (const auto& [fold, count] : of_fold) {
+          all += count;
+          least = std::min(least, count);
+          most = std::max(most, count);
+        }
+        if (of_fold.size() < static_cast<std::size_t>(folds)) least = 0;
+        EXPECT_LE(most - least, 1) << path << " in " << folds;
+        EXPECT_EQ(most, (all + folds - 1) / folds);
+      }
+    }
+  }
+}
+
+TEST(Splits, OneModelMoreMovesFewToOtherFolds) {
+  Recipe recipe = recipe_of(20);
+  recipe.split.folds = 4;
+  recipe.split.stratified = true;
+  const auto before = folds_of(recipe);
+  std::vector<LabelledModel> labels;
+  for (const ModelFile& model : recipe.models)
+    labels.push_back({model.name, *recipe.labels.find(model.name), {}});
+  int most = 0, all = 0;
+  for (int more = 0; more < 50; ++more) {
+    Recipe grown = recipe;
+    const std::string added = fmt::format("x{}.off", more);
+    std::vector<LabelledModel> listed = labels;
+    listed.push_back({added, {"c19", ""}, {}});
+    grown.labels = Labels(listed);
+    grown.models.push_back({added, "/models/x.off"});
+    int moved = 0;
+    for (const auto& [model, fold] : folds_of(grown)) {
+      const auto at = before.find(model);
+      if (at == before.end() || at->second == fold) continue;
+      ++moved;
+      EXPECT_EQ(recipe.labels.find(model)->class_path, "c19");
+    }
+    most = std::max(most, moved);
+    all += moved;
+  }
+  EXPECT_LE(most, 3);
+  EXPECT_LT(all, 100) << "two each";
+}
+
 /// How often each candidate is chosen in each class and split.
 std::map<std::pair<std::string, std::string>, std::map<std::string, int>> counts_of(
     const Recipe& recipe) {
@@ -232,7 +305,8 @@ TEST_F(SplitKeysTest, ThatCannotBeMeantAreNamed) {
             "r.toml:4:20: classes.split.by has no effect without classes.split.test, "
             "classes.split.held_out or classes.split.folds");
   EXPECT_EQ(folder_.findings("classes.split.stratified = true"),
-            "r.toml:4:28: classes.split.stratified has no effect without classes.split.test");
+            "r.toml:4:28: classes.split.stratified has no effect without classes.split.test or "
+            "classes.split.folds");
   EXPECT_EQ(folder_.findings("classes.split = { test = 0.5, stratified = true }"),
             "r.toml:4:44: classes.split.stratified = true wants classes: classes.from names them");
   EXPECT_THAT(folder_.findings("classes.split = { by = \"view\", test = 0.5, stratified = true }"),
