@@ -57,7 +57,9 @@ std::string without_scripts(const GalleryFacts& facts) {
 }  // namespace
 
 std::string gallery_page(const GalleryFacts& facts) {
-  std::string page = k_gallery_page;
+  std::string page;
+  for (const char* const* part = k_gallery_page; *part != nullptr; ++part)
+    page += *part;
   // The marks stand before what is put in for the first, so that no name is taken for one.
   put(page, "<!--without scripts-->", without_scripts(facts));
   put(page, "<!--dataset-->", escaped(facts.dataset.name));

@@ -8,7 +8,7 @@
 namespace ds {
 
 /// page/gallery.html with its style sheet and scripts in it, as ci/embed_page.cmake joins them.
-extern const char* const k_gallery_page;
+extern const char* const k_gallery_page[];
 
 /// index.html: the page with the dataset's name and what those see who run no scripts.
 std::string gallery_page(const GalleryFacts& facts);

@@ -185,7 +185,8 @@ BytePicture light(const Numbers& from) {
 }
 
 BytePicture range(const Numbers& from) {
-  const auto [least, most] = range_of(from, [](float) { return true; });
+  const auto ends = range_of(from, [](float) { return true; });
+  const double least = ends[0], most = ends[1];  // clang 14: a lambda captures no binding
   return colored(from, [&](const float* pixel, std::uint8_t* to) {
     for (int c = 0; c < 3; ++c)
       to[c] =
