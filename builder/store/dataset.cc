@@ -200,9 +200,10 @@ void check_owner(const DatasetRequest& request, const fs::path& folder, const Re
 /// there: somebody's own files, or a dataset handed on without its `.dsbuild`.
 void check_unclaimed(const DatasetRequest& request, const fs::path& folder) {
   std::error_code error;
-  if (request.adopt || fs::exists(pointer_path(folder), error)) return;
+  if (request.adopt) return;
+  // In this order: a build that begins meanwhile writes the pointer before it makes these.
   for (const char* name : {"images", "manifest"})
-    if (fs::exists(folder / name, error))
+    if (fs::exists(folder / name, error) && !fs::exists(pointer_path(folder), error))
       fail(ErrorKind::usage,
            "{}: is there already, and {} does not say that dsbuild made it; take another folder "
            "(-o), or hand this one over with build --adopt",
