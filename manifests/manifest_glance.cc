@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <fstream>
 
 namespace ds {
 namespace {
@@ -156,6 +157,29 @@ std::string draws_text(std::optional<std::uint64_t> attempts, const DrawRecords&
          (draws.empty() ? "" : canonical_json(to_json_value(draws)));
 }
 
+std::string other_classes_text(const std::map<std::string, std::string>& classes) {
+  return classes.empty() ? "" : canonical_json(classes);
+}
+
+void visit_glances(const std::filesystem::path& folder,
+                   const std::function<void(const LineGlance& line)>& visit) {
+  const std::filesystem::path file = folder / "manifest/images.jsonl";
+  std::ifstream in(file, std::ios::binary);
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    // The last line's break is part of it: without it the file is cut off.
+    const auto glance = in.eof() ? std::nullopt : glance_at(line);
+    if (glance)
+      visit(*glance);
+    else if (!in.eof())
+      visit(glance_at(image_from_json_line(line, file.string(), number)));
+    else
+      break;
+  }
+  // Not there, not readable, or cut off: that is told there.
+  if (!in.eof() || !line.empty()) read_images_manifest(folder);
+}
+
 LineGlance glance_at(const ImageRecord& image) {
   LineGlance glance{
       image.id,
@@ -169,7 +193,7 @@ LineGlance glance_at(const ImageRecord& image) {
       image.pixel_counts,
       image.class_id,
       image.fold,
-      image.other_classes.empty() ? "" : canonical_json(image.other_classes),
+      other_classes_text(image.other_classes),
       draws_text(image.draw_attempts, image.draws),
       image.render_key,
       image.files_key};

@@ -4,7 +4,11 @@
 #include "manifests/manifest.h"
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -31,6 +35,12 @@ struct LineGlance {
 /// escaped, or where it is another line: `image_from_json_line` then tells.
 std::optional<LineGlance> glance_at(std::string_view line);
 LineGlance glance_at(const ImageRecord& image);
+/// Of each line of manifest/images.jsonl, which holds until `visit` returns. Throws as
+/// read_images_manifest, of the first line that is wrong where a glance shows it.
+void visit_glances(const std::filesystem::path& folder,
+                   const std::function<void(const LineGlance& line)>& visit);
+/// ImageRecord::other_classes as LineGlance has them.
+std::string other_classes_text(const std::map<std::string, std::string>& classes);
 /// The draws as canonical JSON, and before them how often they were drawn.
 std::string draws_text(std::optional<std::uint64_t> attempts, const DrawRecords& draws);
 

@@ -2,14 +2,17 @@
 #include "builder/plan/manifest_state.h"
 
 #include "builder/plan/dataset_manifest.h"
+#include "manifests/manifest_glance.h"
 #include "tracer/base/disk_error.h"
 #include "tracer/base/error.h"
 #include "tracer/base/hash_stream.h"
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <sstream>
+#include <string_view>
 
 namespace ds {
 namespace {
@@ -26,15 +29,15 @@ constexpr std::size_t k_most_named = 4;
 /// What a line of images.jsonl says of an image besides what its keys tell.
 struct Label {
   const char* name;
-  std::string ImageRecord::*recorded;
+  std::string_view LineGlance::*recorded;
   Shared<std::string> ImageSpec::*wanted;
   bool of_model;  ///< holds of images too that cannot be made now
 };
 constexpr Label k_labels[] = {
-    {"class_path", &ImageRecord::class_path, &ImageSpec::class_path, true},
-    {"split", &ImageRecord::split, &ImageSpec::split, true},
-    {"material", &ImageRecord::material, &ImageSpec::material_name, false},
-    {"environment", &ImageRecord::environment, &ImageSpec::environment_name, false},
+    {"class_path", &LineGlance::class_path, &ImageSpec::class_path, true},
+    {"split", &LineGlance::split, &ImageSpec::split, true},
+    {"material", &LineGlance::material, &ImageSpec::material_name, false},
+    {"environment", &LineGlance::environment, &ImageSpec::environment_name, false},
 };
 
 /// dataset.json but for what counts the images.
@@ -112,46 +115,47 @@ bool written_from(const PlacedFiles& placed, const char* path, Hash128 source) {
   return known != nullptr && known->product == source;
 }
 
-std::string change(const std::string& before, const std::string& after) {
-  const auto shown = [](const std::string& text) { return text.empty() ? "none" : text; };
+std::string change(std::string_view before, std::string_view after) {
+  const auto shown = [](std::string_view text) { return text.empty() ? "none" : text; };
   return fmt::format("{} -> {}", shown(before), shown(after));
 }
 
-void compare_images(const Plan& plan, const std::vector<ImageRecord>& records,
-                    std::vector<std::string>& behind) {
-  std::map<std::string_view, const ImageRecord*> by_id;
-  for (const ImageRecord& record : records)
-    by_id.emplace(record.id, &record);
-  for (const Label& label : k_labels) {
-    std::size_t count = 0;
-    std::string first;
-    for (const PlannedImage& image : plan.images) {
-      const auto record = by_id.find(image.spec.id);
-      if (record == by_id.end() || image.stale() || (image.error && !label.of_model)) continue;
-      const std::string& before = record->second->*label.recorded;
-      const std::string& after = *(image.spec.*label.wanted);
-      if (before == after) continue;
-      if (count++ == 0) first = fmt::format("{}: {}", image.spec.id, change(before, after));
-    }
-    if (count > 0)
-      behind.push_back(
-          fmt::format("{} of {} image{} ({})", label.name, count, count == 1 ? "" : "s", first));
+/// How many images a word of the manifest is no longer true of.
+struct Changes {
+  std::size_t count = 0;
+  std::string first{};  ///< "mug/3: train -> test", of the first
+
+  void tell(const char* name, std::vector<std::string>& behind) const {
+    if (count == 0) return;
+    behind.push_back(fmt::format("{} of {} image{}{}", name, count, count == 1 ? "" : "s",
+                                 first.empty() ? "" : " (" + first + ")"));
   }
-  const auto count_of = [&](const char* name, const auto& differs) {
-    std::size_t count = 0;
-    for (const PlannedImage& image : plan.images) {
-      const auto record = by_id.find(image.spec.id);
-      if (record != by_id.end() && !image.stale() && differs(*record->second, image.spec)) ++count;
+};
+
+void compare_images(const Plan& plan, const fs::path& folder, std::vector<std::string>& behind) {
+  std::map<std::string_view, const PlannedImage*> by_id;
+  for (const PlannedImage& image : plan.images)
+    by_id.emplace(image.spec.id, &image);
+  std::array<Changes, std::size(k_labels)> labels;
+  Changes more, folds;
+  visit_glances(folder, [&](const LineGlance& line) {
+    const auto at = by_id.find(line.id);
+    if (at == by_id.end() || at->second->stale()) return;
+    const PlannedImage& image = *at->second;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      if (image.error && !k_labels[i].of_model) continue;
+      const std::string_view before = line.*k_labels[i].recorded;
+      const std::string& after = *(image.spec.*k_labels[i].wanted);
+      if (before == after || labels[i].count++ > 0) continue;
+      labels[i].first = fmt::format("{}: {}", image.spec.id, change(before, after));
     }
-    if (count > 0)
-      behind.push_back(fmt::format("{} of {} image{}", name, count, count == 1 ? "" : "s"));
-  };
-  count_of("classes.more", [](const ImageRecord& record, const ImageSpec& spec) {
-    return record.other_classes != *spec.other_classes;
+    if (line.other_classes != other_classes_text(*image.spec.other_classes)) ++more.count;
+    if (line.fold != image.spec.fold) ++folds.count;
   });
-  count_of("fold", [](const ImageRecord& record, const ImageSpec& spec) {
-    return record.fold != spec.fold;
-  });
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    labels[i].tell(k_labels[i].name, behind);
+  more.tell("classes.more", behind);
+  folds.tell("fold", behind);
 }
 
 /// "licences: models/a.off, models/b.off and 3 more"
@@ -274,7 +278,7 @@ std::string older_program(const fs::path& folder) {
 std::vector<std::string> differences(const Dataset& dataset, const Plan& plan, bool any_stale) {
   std::vector<std::string> behind;
   try {
-    compare_images(plan, read_images_manifest(dataset.folder), behind);
+    compare_images(plan, dataset.folder, behind);
     // A recipe whose images are to be made is another one: that is said of them.
     if (!any_stale)
       compare_datasets(read_dataset_manifest(dataset.folder), description(dataset.recipe, plan),

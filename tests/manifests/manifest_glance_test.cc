@@ -2,7 +2,14 @@
 // A glance at a line says what taking it apart says, or nothing.
 #include "manifests/manifest_glance.h"
 
+#include "tracer/base/error.h"
+#include "tracer/base/files.h"
+
 #include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
 
 namespace ds {
 namespace {
@@ -101,6 +108,28 @@ TEST(ManifestGlance, LeavesToAReaderWhatIsEscapedOrNoSuchLine) {
   EXPECT_FALSE(glance_at("{}"));
   for (std::size_t size = 0; size + 9 < line.size(); ++size)
     EXPECT_FALSE(glance_at(std::string_view(line).substr(0, size))) << size;
+}
+
+std::vector<std::string> ids_in(const std::filesystem::path& folder, const std::string& text) {
+  write_file_atomic(folder / "manifest/images.jsonl", text);
+  std::vector<std::string> ids;
+  visit_glances(folder, [&](const LineGlance& line) { ids.emplace_back(line.id); });
+  return ids;
+}
+
+TEST(ManifestGlance, GoesThroughAFile) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(visit_glances(folder.path(), [](const LineGlance&) {}), Error);
+  const std::string plain = to_json_line(record("mug.ply")) + "\n";
+  ImageRecord image = record("a\"b.ply");
+  image.intrinsics = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const std::string escaped = to_json_line(image) + "\n";
+  EXPECT_TRUE(ids_in(folder.path(), "").empty());
+  EXPECT_EQ(ids_in(folder.path(), plain + escaped),
+            (std::vector<std::string>{"mug.ply/3", "a\"b.ply/3"}));
+  for (const std::string& wrong :
+       {plain + "{}\n" + plain, plain + plain.substr(0, plain.size() - 1)})
+    EXPECT_THROW(ids_in(folder.path(), wrong), Error) << wrong;
 }
 
 }  // namespace
