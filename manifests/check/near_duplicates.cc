@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <map>
+#include <optional>
 #include <set>
 #include <utility>
+#include <vector>
 
 namespace ds {
 namespace {
@@ -24,6 +25,14 @@ constexpr int k_most_bits = 3;
 
 std::uint64_t part_of(std::uint64_t gradient, unsigned part) {
   return (gradient >> (16 * part) & 0xffffU) | std::uint64_t{part} << 16;
+}
+
+/// The lowest 16 bits of four that are none.
+unsigned first_equal_part(std::uint64_t bits) {
+  unsigned part = 0;
+  while (part < 3 && (bits >> (16 * part) & 0xffffU) != 0)
+    ++part;
+  return part;
 }
 
 bool same_pixels(const ImageRecord& a, const ImageRecord& b) {
@@ -57,27 +66,29 @@ void check_near_duplicates(const CheckInput& input, CheckReport& report) {
       parts.emplace_back(part_of(input.pictures[i]->gradient, part), i);
   }
   std::sort(parts.begin(), parts.end());
-  // Of each picture the first that it is like, and where there is one the first of another split.
-  std::map<std::size_t, std::size_t> within, across;
+  // Of each picture the first found that it is like, in its split and in another.
+  using Others = std::vector<std::optional<std::size_t>>;
+  Others within(input.pictures.size()), across(input.pictures.size());
   for (std::size_t i = 0; i < parts.size(); ++i)
     for (std::size_t j = i + 1; j < parts.size() && parts[j].first == parts[i].first; ++j) {
       const std::size_t a = parts[i].second, b = parts[j].second;
-      const bool one_split = input.images[a].split == input.images[b].split;
-      std::map<std::size_t, std::size_t>& known = one_split ? within : across;
-      if (known.contains(b)) continue;
       const PictureFacts &facts_a = *input.pictures[a], &facts_b = *input.pictures[b];
-      if (std::popcount(facts_a.gradient ^ facts_b.gradient) > k_most_bits ||
-          !(thumbnail_distance(facts_a, facts_b) <= distance) ||  // also where one is NaN
-          same_pixels(input.images[a], input.images[b]))
-        continue;
-      known.emplace(b, a);
+      const std::uint64_t bits = facts_a.gradient ^ facts_b.gradient;
+      if (std::popcount(bits) > k_most_bits || first_equal_part(bits) != parts[i].first >> 16)
+        continue;  // the other equal parts bring the pair again
+      const bool one_split = input.images[a].split == input.images[b].split;
+      std::optional<std::size_t>& other = (one_split ? within : across)[b];
+      if (!other && are_alike(facts_a, facts_b, distance) &&
+          !same_pixels(input.images[a], input.images[b]))
+        other = a;
     }
-  const auto add = [&](const std::map<std::size_t, std::size_t>& pairs, CheckLevel level,
-                       const char* what, const char* advice) {
+  const auto add = [&](const Others& others, CheckLevel level, const char* what,
+                       const char* advice) {
     std::vector<std::string> names;
     std::set<std::string> ids;
-    for (const auto& [b, a] : pairs) {
-      const ImageRecord &image = input.images[b], &other = input.images[a];
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      if (!others[i]) continue;
+      const ImageRecord &image = input.images[i], &other = input.images[*others[i]];
       names.push_back(
           fmt::format("{} as {} (another {})", image.id, other.id, what_differs(image, other)));
       ids.insert({image.id, other.id});

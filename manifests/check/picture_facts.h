@@ -35,8 +35,8 @@ struct PictureFacts {
 /// `mask`: of the same size, one channel, 0 where the model is not seen; or nothing.
 PictureFacts facts_of(const DecodedImage& picture, const DecodedImage* mask);
 
-/// Root mean square of the differences of two thumbnails.
-double thumbnail_distance(const PictureFacts& a, const PictureFacts& b);
+/// Whether the root mean square of the differences of two thumbnails is `distance` at most.
+bool are_alike(const PictureFacts& a, const PictureFacts& b, double distance);
 
 /// The facts of each image's picture, on all processors; nothing for an image without one and where
 /// its files cannot be read, which `failed` is told with the reason. `done` may be called from any

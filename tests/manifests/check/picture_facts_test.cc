@@ -92,8 +92,9 @@ TEST(PictureFacts, ThumbnailAndGradient) {
                 1e-6);
   EXPECT_EQ(facts.gradient, ~std::uint64_t{0});
   EXPECT_EQ(facts_of(flat(7), nullptr).gradient, 0U);
-  EXPECT_NEAR(thumbnail_distance(facts_of(flat(51), nullptr), facts_of(flat(102), nullptr)), 0.2,
-              1e-6);
+  const PictureFacts dark = facts_of(flat(51), nullptr), light = facts_of(flat(102), nullptr);
+  EXPECT_TRUE(are_alike(dark, light, 0.2 + 1e-6));
+  EXPECT_FALSE(are_alike(dark, light, 0.2 - 1e-6));
 }
 
 /// Four images of one model, two in each split.
