@@ -175,8 +175,8 @@ void Settings::check(const std::string& name, RecipeValue value) {
         [&](const RecipeValue& at, const std::string& message) { complain(at, name, message); });
     if (distribution && !distribution->word->by_view && !value.table()->contains("per"))
       distribution->per = row->per;
-    if (distribution) distributions_.emplace(name, *std::move(distribution));
     (distribution ? values_ : wrong_).emplace(name, std::move(value));
+    if (distribution) distributions_.emplace(name, *std::move(distribution));
     return;
   }
   if (const RecipeValue* unfit = unfit_part(*key, value)) {
