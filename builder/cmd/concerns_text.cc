@@ -140,7 +140,7 @@ std::vector<Concern> tell_planned_concerns(const Recipe& recipe, const Plan& pla
                         *image.spec.split,
                         0,
                         {}});
-  const std::vector<Concern> concerns = dataset_concerns(recipe, plan.concerns, {}, images);
+  std::vector<Concern> concerns = dataset_concerns(recipe, plan.concerns, {}, images);
   for (const Concern& concern : concerns)
     if (concern.count > 0 && !text_of(concern).said && !is_allowed(concern, recipe.coverage))
       warn(to_text(concern) + remedy(concern, recipe) + way_out(concern));

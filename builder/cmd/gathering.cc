@@ -57,7 +57,7 @@ BroughtHome bring_home(Store& store, Disk& disk) {
 /// Of a folder that is a store, or is to become one.
 fs::path taking_store(const std::string& to, Disk& disk) {
   std::error_code error;
-  const fs::path folder = fs::absolute(to).lexically_normal();
+  fs::path folder = fs::absolute(to).lexically_normal();
   for (const char* name : {"objects", "records", "slurm", "dsbuild.sqlite"})
     if (fs::exists(folder / name, error)) return folder;
   if (!fs::exists(folder, error) ||

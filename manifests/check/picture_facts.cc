@@ -147,7 +147,7 @@ PictureFacts facts_of(const DecodedImage& picture, const DecodedImage* mask) {
 }
 
 bool are_alike(const PictureFacts& a, const PictureFacts& b, double distance) {
-  constexpr std::size_t k_row = 3 * PictureFacts::k_side;
+  constexpr std::size_t k_row = std::size_t{3} * PictureFacts::k_side;
   const double most = distance * distance * static_cast<double>(a.thumbnail.size());
   double sum = 0;
   for (std::size_t row = 0; row < a.thumbnail.size(); row += k_row) {

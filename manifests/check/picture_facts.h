@@ -5,6 +5,7 @@
 #include "tracer/render/image_files.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -19,7 +20,7 @@ namespace ds {
 struct PictureFacts {
   static constexpr int k_side = 16;
   /// Means over a grid of k_side x k_side equal parts, three channels, row by row.
-  std::array<float, 3 * k_side * k_side> thumbnail{};
+  std::array<float, std::size_t{3} * k_side * k_side> thumbnail{};
   /// Bit 8 y + x: whether of 9 x 8 parts the one at (x + 1, y) is lighter than that at (x, y). Pictures
   /// that look alike differ in few bits (Krawetz, "Kind of like that", 2013).
   std::uint64_t gradient = 0;
