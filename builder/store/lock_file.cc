@@ -5,12 +5,17 @@
 #include "tracer/base/files.h"
 
 #include <cerrno>
+#include <chrono>
 #include <fcntl.h>
+#include <thread>
 #include <unistd.h>
 #include <utility>
 
 namespace ds {
 namespace {
+
+/// Who asks again and again is seen to be alive, by who watches a build.
+constexpr std::chrono::milliseconds k_poll{10};
 
 struct flock range_of(short type, long from, long length) {
   struct flock range = {};
@@ -36,26 +41,27 @@ LockFile::~LockFile() {
 LockFile::LockFile(LockFile&& other) noexcept
     : file_(std::move(other.file_)), fd_(std::exchange(other.fd_, -1)) {}
 
-bool LockFile::set(short type, long offset, bool wait) {
+bool LockFile::set(short type, long offset) {
   struct flock range = range_of(type, offset, 1);
-  while (::fcntl(fd_, wait ? F_OFD_SETLKW : F_OFD_SETLK, &range) != 0) {
+  while (::fcntl(fd_, F_OFD_SETLK, &range) != 0) {
     if (errno == EINTR) continue;
-    if (!wait && (errno == EAGAIN || errno == EACCES)) return false;
+    if (errno == EAGAIN || errno == EACCES) return false;
     fail_system(file_, "lock", errno);
   }
   return true;
 }
 
 void LockFile::take(Lock lock, long offset) {
-  set(lock == Lock::shared ? F_RDLCK : F_WRLCK, offset, true);
+  while (!try_take(lock, offset))
+    std::this_thread::sleep_for(k_poll);
 }
 
 bool LockFile::try_take(Lock lock, long offset) {
-  return set(lock == Lock::shared ? F_RDLCK : F_WRLCK, offset, false);
+  return set(lock == Lock::shared ? F_RDLCK : F_WRLCK, offset);
 }
 
 void LockFile::release(long offset) {
-  set(F_UNLCK, offset, false);
+  set(F_UNLCK, offset);
 }
 
 bool LockFile::others_hold(long from, long to) const {

@@ -40,7 +40,7 @@ class LockFile {
   int descriptor() const { return fd_; }
 
  private:
-  bool set(short type, long offset, bool wait);
+  bool set(short type, long offset);
 
   std::filesystem::path file_;
   int fd_;
