@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/run_program.h"
+#include "builder/cmd/sbatch_options.h"
 #include "builder/cmd/shell_quoted.h"
 #include "builder/cmd/slurm_script.h"
 #include "builder/cmd/slurm_state.h"
@@ -144,6 +145,7 @@ std::vector<std::string> submit(const fs::path& script) {
 }  // namespace
 
 int run_slurm(const Arguments& arguments) {
+  check_sbatch_options(arguments.sbatch_options);
   std::error_code error;
   if (fs::is_directory(arguments.target, error))
     fail(ErrorKind::usage, "slurm: wanted a recipe, found the folder {}", arguments.target);

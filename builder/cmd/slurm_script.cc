@@ -101,7 +101,7 @@ case $1 in
     [ -z "$local" ] || share+=(--local "$local")
     run "${build[@]}" "${share[@]}" || code=$?
     # A build that was killed could not bring what it had made.
-    if [ "$code" -ne 0 ] && [ -d "$local/records" ]; then
+    if [ "$code" -ne 0 ] && [ -n "$local" ] && [ -d "$local/records" ]; then
       "$dsbuild" store gather "$local" "$store" --database "$tmp/database" --json || code=$?
     fi
     go_on_later
@@ -109,6 +109,8 @@ case $1 in
   last)  # makes what shards left, places the files, writes the manifest, leaves the database in the store
     run "${build[@]}" -o "$folder" || code=$?
     go_on_later
+    # What it found so far would be lost by a signal: the time that is left may be enough for the rest.
+    trap '' USR1
     if [ "$code" -eq 0 ]; then run "$dsbuild" verify "$folder" --database "$tmp/database" --json || code=$?; fi
     if [ "$code" -eq 0 ] && [ -n "$mark" ]; then rm -f -- "$mark"; fi
     ;;

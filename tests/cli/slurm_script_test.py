@@ -181,6 +181,18 @@ class SlurmScriptTest(TinyCase):
         calls = (self.fake / "calls").read_text()
         self.assertEqual(calls.count("--time=2:00:00 -p long "), 2)
 
+    def test_a_time_limit_that_is_near_ends_no_verification(self):
+        script, fake = self.folder / "script.sh", self.folder / "dsbuild"
+        fake.write_text("#!/bin/bash\n[ $1 != verify ] || { kill -USR1 $PPID; sleep 1; }\necho {}\n")
+        fake.chmod(0o755)
+        text = self.slurm("--print").out
+        script.write_text("".join(f"dsbuild='{fake}'\n" if line.startswith("dsbuild=") else line + "\n"
+                                  for line in text.splitlines()))
+        run = subprocess.run(["bash", script, "last"], capture_output=True, text=True, check=False, timeout=60,
+                             env={**self.environment, "SLURM_JOB_ID": "1"})
+        self.assertEqual(run.returncode, 0, run)
+        self.assertNotIn("requeued", run.stdout)
+
     def test_any_path_and_value(self):
         odd = self.folder / "a 'b' $(touch no) %j \"c\""
         odd.mkdir()
@@ -307,6 +319,21 @@ class SlurmScriptTest(TinyCase):
         self.assertEqual(self.slurm("--print", environment=nowhere).err, "")
         for arguments in (["--nodes", "0"], ["--shards", "x"], ["--shards", "70000"]):
             self.assertIn(f"slurm {arguments[0]}: wanted a whole number", self.slurm(*arguments, code=2).err)
+        # What would take away what it gives sbatch itself, however it is spelt.
+        for words, name in ((["--array=1-3"], "array"), (["--array", "1-3"], "array"), (["-a1-3"], "array"), (["-Ha", "1"], "array"),
+                            (["--arr=1"], "array"), (["--output=foo"], "output"), (["-o", "foo"], "output"),
+                            (["--time", "1:00", "-d", "afterok:1"], "dependency"), (["--dependency=singleton"], "dependency"),
+                            (["--parsable"], "parsable"), (["--wait"], "wait"), (["-W"], "wait"), (["--wrap=true"], "wrap"),
+                            (["--test-only"], "test-only"), (["--help"], "help"), (["-vV"], "version")):
+            for also in ([], ["--print"]):
+                run = self.slurm(*also, "--", *words, code=2)
+                self.assertIn(f"slurm: sbatch's --{name} is not to be given, got ", run.err)
+        for words in (["job.sh"], ["--time=1:00", "job.sh"], ["-p", "short", "job.sh"], ["--", "job.sh"]):
+            self.assertIn("sbatch would run it in place of the script", self.slurm("--", *words, code=2).err)
+        self.assertFalse((self.fake / "calls").exists())
+        self.assertFalse(self.store.exists() or self.out.exists())
+        others = ["--wait-all-nodes=1", "-n4", "-p", "dear", "--exclude=a,o", "-Hp", "array", "--export=NONE"]
+        self.assertIn("--wait-all-nodes=1", self.slurm("--print", "--", *others).out)
         run = self.run_it("slurm", self.tiny, env=self.environment)
         self.assertEqual((run.code, run.err), (2, f"dsbuild: error: slurm: wanted a recipe, found the folder {self.tiny}\n"))
 
