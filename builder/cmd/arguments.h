@@ -80,7 +80,7 @@ enum class Option {
   init_from,
   init_file,
   store_task,
-  store_limits,  ///< what gc takes away
+  store_limits,  ///< what gc takes away, and where gather keeps a database
   local_store,   ///< where a machine keeps what it makes until that is in the store
   slurm_local,   ///< the same, of each node
   overrides,

@@ -9,11 +9,11 @@
 #include "manifests/whole_folder.h"
 #include "tracer/base/error.h"
 #include "tracer/base/log.h"
+#include "tracer/base/regular_file.h"
 #include "tracer/base/streams.h"
 #include "tracer/scene/mesh.h"
 
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <map>
 
@@ -56,7 +56,7 @@ std::function<FileMesh(const ImageRecord&)> mesh_reader(const Arguments& argumen
 
 /// Of one that stands there; "" where none does.
 std::string format_of_export(const std::filesystem::path& folder) {
-  std::ifstream file(folder / k_export_folder.record);
+  std::ifstream file = regular_stream(folder / k_export_folder.record);
   if (!file) return "";
   const nlohmann::json record = nlohmann::json::parse(file, nullptr, false);
   return record.is_object() ? record.value("format", "") : "";

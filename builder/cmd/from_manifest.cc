@@ -4,10 +4,10 @@
 #include "builder/cmd/plan_text.h"
 #include "builder/plan/plan.h"
 #include "tracer/base/error.h"
+#include "tracer/base/regular_file.h"
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 
 namespace ds {
 
@@ -15,7 +15,7 @@ namespace {
 
 /// Lines of images.jsonl; none where it cannot be read.
 std::uint64_t listed_images(const std::filesystem::path& folder) {
-  std::ifstream file(folder / "manifest/images.jsonl");
+  std::ifstream file = regular_stream(folder / "manifest/images.jsonl");
   std::uint64_t lines = 0;
   for (std::string line; std::getline(file, line);)
     lines += line.empty() ? 0U : 1U;

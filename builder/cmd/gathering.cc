@@ -54,15 +54,24 @@ BroughtHome bring_home(Store& store, Disk& disk) {
   return brought;
 }
 
+/// Whether nothing is there, or the lock alone of who is about to make a store of it.
+bool is_new(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(folder, error)) return true;
+  fs::directory_iterator entry(folder, error);
+  for (const fs::directory_iterator end; !error && entry != end; entry.increment(error))
+    if (entry->path().filename() != "lock") return false;
+  return !error;
+}
+
 /// Of a folder that is a store, or is to become one.
 fs::path taking_store(const std::string& to, Disk& disk) {
   std::error_code error;
   fs::path folder = fs::absolute(to).lexically_normal();
+  // First: who makes it makes one of the others next.
+  if (is_new(folder)) return folder;
   for (const char* name : {"objects", "records", "slurm", "dsbuild.sqlite"})
     if (fs::exists(folder / name, error)) return folder;
-  if (!fs::exists(folder, error) ||
-      (fs::is_directory(folder, error) && fs::is_empty(folder, error)))
-    return folder;
   const Dataset dataset =
       open_dataset({folder, {}, {}, {}, false}, Access::records, disk);  // says what is wrong else
   if (dataset.store == nullptr)

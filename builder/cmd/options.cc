@@ -156,6 +156,10 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
           ->type_name("BYTES");
       verb.add_flag("--forget", to.forget,
                     "gc: also what datasets name whose folder is gone; they are forgotten");
+      verb.add_option("--database", to.database_folder,
+                      "gather: keep TO's database and locks in this folder of the machine's own, "
+                      "where several machines write to TO [TO]")
+          ->type_name("DIR");
       return;
     case Option::overrides:
       verb.add_option(

@@ -57,6 +57,7 @@ void refuse_gc(const SlurmMark& mark) {
 OpenStore open_store(const Arguments& arguments, bool alone, Disk& disk) {
   const fs::path folder = store_folder_of(arguments, disk);
   OpenStore open{std::make_unique<Store>(folder, disk), nullptr, nullptr};
+  if (arguments.store_task != "verify") open.store->leave_damage();
   const std::optional<SlurmMark> mark = find_slurm_mark(*open.store);
   if (alone && mark) refuse_gc(*mark);
   if (mark || is_read_only(folder)) {
@@ -90,6 +91,23 @@ void check_all_known(const Store& store, const StoreUse& use) {
          store.folder().string());
 }
 
+/// What lies in a store and is none of its files, or not whole.
+void warn_of_strange(const Store& store, const StoreUse& use) {
+  constexpr std::size_t k_most = 20;
+  for (std::size_t i = 0; i < std::min(use.faults.size(), k_most); ++i)
+    warn(fmt::format("{} (dsbuild store verify)", use.faults[i]));
+  if (use.faults.size() > k_most) warn(fmt::format("and {} more", use.faults.size() - k_most));
+  if (use.unreadable > 0)
+    warn(
+        fmt::format("{}: {} records of another dsbuild's form, left as they are, with all objects "
+                    "whose hashes they hold",
+                    store.folder().string(), use.unreadable));
+  if (!use.strangers.empty())
+    warn(fmt::format(
+        "{}: no file of the store's, left alone{}", use.strangers.front().string(),
+        use.strangers.size() > 1 ? fmt::format(", and {} more", use.strangers.size() - 1) : ""));
+}
+
 std::string amount_text(const Amount& amount) {
   return fmt::format("{} files, {:.1f} MB", amount.files, static_cast<double>(amount.bytes) / 1e6);
 }
@@ -113,6 +131,7 @@ int run_stats(const Arguments& arguments, Disk& disk) {
   const OpenStore open = open_store(arguments, false, disk);
   const StoreUse use =
       look_at_store(*open.store, *open.database, arguments.forget, stop_on_signal());
+  warn_of_strange(*open.store, use);
   Amount objects, records, unnamed;
   for (const StoreFileUse& file : use.files) {
     (file.kind == Store::Kind::object ? objects : records).add(file.bytes);
@@ -127,6 +146,9 @@ int run_stats(const Arguments& arguments, Disk& disk) {
                         {"images", dataset.images}});
   for (const auto& [kind, amount] : use.by_kind)
     kinds[kind] = to_json(amount);
+  nlohmann::json elsewhere = nlohmann::json::array();
+  for (const fs::path& folder : use.unknown)
+    elsewhere.push_back(folder.string());
   if (arguments.json) {
     print_json({{"store", open.store->folder().string()},
                 {"datasets", datasets},
@@ -135,6 +157,10 @@ int run_stats(const Arguments& arguments, Disk& disk) {
                 {"named", kinds},
                 {"unnamed", to_json(unnamed)},
                 {"missing", use.missing},
+                {"damaged_records", use.faults.size()},
+                {"unreadable_records", use.unreadable},
+                {"strangers", use.strangers.size()},
+                {"elsewhere", elsewhere},
                 {"temporaries", to_json(Amount{use.temporaries.size(), use.temporary_bytes})}});
     return 0;
   }
@@ -143,9 +169,21 @@ int run_stats(const Arguments& arguments, Disk& disk) {
     say(Stream::result, "  {}: {} images, {}{}\n", dataset.row.name, dataset.images,
         dataset.folder.empty() ? "in a folder that its next build tells" : dataset.folder.string(),
         dataset.is_gone ? ", which is gone (gc --forget)" : "");
+  if (use.datasets.empty() && use.unknown.empty() && !use.files.empty())
+    say(Stream::result,
+        "  it knows no dataset: what builds of a part made with --database (--shard, --no-files) "
+        "is "
+        "named by the build of all images that follows\n");
+  for (const fs::path& folder : use.unknown)
+    say(Stream::result,
+        "  {}: a dataset whose builds keep their database elsewhere (--database), or built before "
+        "this one was lost: what it names is not known here\n",
+        folder.string());
   for (const auto& [kind, amount] : use.by_kind)
     say(Stream::result, "  {}: {}\n", kind, amount_text(amount));
-  say(Stream::result, "  no dataset names: {}\n", amount_text(unnamed));
+  say(Stream::result, "  {}: {}\n",
+      use.unknown.empty() ? "no dataset names" : "no dataset that is known names",
+      amount_text(unnamed));
   say(Stream::result, "  all objects: {}; records: {}\n", amount_text(objects),
       amount_text(records));
   if (use.missing > 0)
@@ -173,6 +211,7 @@ int run_gc(const Arguments& arguments, Disk& disk) {
   const StoreUse use =
       look_at_store(*open.store, *open.database, arguments.forget, stop_on_signal());
   check_all_known(*open.store, use);
+  warn_of_strange(*open.store, use);
   const CollectResult result = collect(*open.store, *open.database, request, use);
   if (arguments.json) {
     print_json({{"objects", to_json(result.objects)},
@@ -182,6 +221,9 @@ int run_gc(const Arguments& arguments, Disk& disk) {
                 {"unnamed", to_json(result.unnamed)},
                 {"forgotten", result.forgotten},
                 {"products", result.products},
+                {"damaged_records", use.faults.size()},
+                {"unreadable_records", use.unreadable},
+                {"strangers", use.strangers.size()},
                 {"dry_run", arguments.dry_run}});
     return 0;
   }
@@ -225,11 +267,15 @@ int run_store_verify(const Arguments& arguments, Disk& disk) {
   const OpenStore open = open_store(arguments, false, disk);
   const std::atomic<bool>& stop = stop_on_signal();
   std::vector<std::pair<Store::Kind, Hash128>> all;
+  std::uint64_t left = 0, done = 0;
   for (const Store::Kind kind : {Store::Kind::object, Store::Kind::record})
     open.store->visit_files(kind, [&](const Store::StoredFile& file) {
       if (file.hash) all.emplace_back(kind, *file.hash);
+      if (file.hash || file.fault.empty()) return;
+      warn(fmt::format("{}: {}, and stays (move it away)", file.path.string(), file.fault));
+      ++left;
     });
-  std::uint64_t damaged = 0, left = 0, done = 0;
+  std::uint64_t damaged = left;
   {
     WorkProgress progress("files of the store read");
     for (const auto& [kind, hash] : all) {

@@ -76,7 +76,7 @@ const std::vector<Verb>& verbs() {
        run_slurm},
       {"store",
        "look after a store: what is in it, what no dataset names, whether it is whole; gather two",
-       {store_task, store_limits, database_folder, dry_run, json},
+       {store_task, store_limits, dry_run, json},
        run_store},
       {"clean",
        "take a dataset's files out of its folder; the store keeps what they were made of",

@@ -2,6 +2,7 @@
 #include "builder/db/file_check.h"
 
 #include "tracer/base/error.h"
+#include "tracer/base/regular_file.h"
 
 #include <exception>
 #include <fstream>
@@ -14,7 +15,7 @@ namespace fs = std::filesystem;
 
 std::optional<FileStamp> read_mark(const fs::path& file) {
   FileStamp stamp;
-  std::ifstream in(file);
+  std::ifstream in = regular_stream(file);
   if (in >> stamp.size_bytes >> stamp.mtime_ns >> stamp.ctime_ns >> stamp.inode) return stamp;
   return std::nullopt;
 }

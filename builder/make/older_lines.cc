@@ -3,6 +3,7 @@
 
 #include "tracer/base/error.h"
 #include "tracer/base/log.h"
+#include "tracer/base/regular_file.h"
 
 #include <algorithm>
 #include <utility>
@@ -44,7 +45,7 @@ OlderLines::OlderLines(const std::filesystem::path& folder, bool as_written) {
     records_ = read_whole(folder);
     return;
   }
-  in_.open(file_, std::ios::binary);
+  in_ = regular_stream(file_);
   if (!in_) fail(ErrorKind::io, "{}: cannot be read", file_.string());
 }
 

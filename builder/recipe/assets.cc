@@ -47,6 +47,11 @@ bool is_material(const fs::path& path) {
 bool is_environment(const fs::path& path) {
   return is_file(path / "environment.scn");
 }
+/// One whose scene is no file.
+bool is_odd_environment(const fs::path& path) {
+  std::error_code error;
+  return !is_environment(path) && fs::exists(path / "environment.scn", error);
+}
 std::string file_name(const fs::path& path) {
   return path.filename().string();
 }
@@ -147,6 +152,7 @@ class FolderWalk {
 
   void enter(const fs::path& folder, std::error_code& error) {
     if (!first_visit(folder)) return;
+    if (kind_.section == "environments" && is_odd_environment(folder)) ++listing_.specials;
     if (recursive_)
       walk(folder, error);
     else if (kind_.section == "models" && holds_one(folder))

@@ -2,9 +2,9 @@
 #include "builder/store/build_ending.h"
 
 #include "builder/store/killed_builds.h"
+#include "tracer/base/regular_file.h"
 
 #include <fcntl.h>
-#include <fstream>
 #include <optional>
 #include <string>
 #include <unistd.h>
@@ -38,14 +38,14 @@ std::string text_of(const BuildRow& build) {
 }
 
 void write_over(const fs::path& file, const std::string& text, int flags) {
-  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC | flags, 0666);
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK | flags, 0666);
   if (descriptor < 0) return;
   [[maybe_unused]] const ssize_t written = ::pwrite(descriptor, text.data(), text.size(), 0);
   ::close(descriptor);
 }
 
 std::optional<BuildRow> kept_ending(const fs::path& folder, const BuildRow& build) {
-  std::ifstream file(folder / ".dsbuild" / k_file);
+  std::ifstream file = regular_stream(folder / ".dsbuild" / k_file);
   std::string header, rest;
   BuildRow kept = build;
   std::getline(file, header);

@@ -214,6 +214,10 @@ void open_store(Dataset& dataset, const fs::path& folder, const DatasetRequest& 
                 Access access, Disk& disk) {
   dataset.store = std::make_unique<Store>(
       folder, disk, request.local_folder.empty() ? fs::path() : normal(request.local_folder));
+  if (access == Access::build)
+    refuse_read_only(folder);
+  else
+    dataset.store->leave_damage();
   if (!request.database_folder.empty()) {
     const fs::path own = normal(request.database_folder);
     dataset.claims = std::make_unique<Claims>(own / "lock");

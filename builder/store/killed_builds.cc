@@ -4,16 +4,14 @@
 #include "builder/store/build_ending.h"
 #include "builder/store/host.h"
 #include "tracer/base/error.h"
+#include "tracer/base/temporary_file.h"
 
 #include <cerrno>
-#include <charconv>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <unistd.h>
 
 namespace ds {
@@ -36,22 +34,6 @@ bool runs_elsewhere(std::int64_t process) {
   if (process == ::getpid()) return false;
   const bool is_there = ::kill(static_cast<pid_t>(process), 0) == 0 || errno == EPERM;
   return is_there && !has_ended(process);
-}
-
-/// The process in a name that write_file_atomic gives a temporary, ".NAME.PROCESS.COUNT.tmp".
-std::optional<std::int64_t> process_of_temporary(std::string_view name) {
-  constexpr std::string_view k_ending = ".tmp";
-  if (!name.starts_with('.') || !name.ends_with(k_ending)) return std::nullopt;
-  name.remove_suffix(k_ending.size());
-  const std::size_t count = name.rfind('.');
-  if (count == 0 || count == std::string_view::npos) return std::nullopt;
-  const std::size_t process = name.rfind('.', count - 1);
-  if (process == 0 || process == std::string_view::npos) return std::nullopt;
-  const std::string_view digits = name.substr(process + 1, count - process - 1);
-  std::int64_t number = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
-  return number;
 }
 
 }  // namespace

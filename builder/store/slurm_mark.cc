@@ -98,7 +98,7 @@ bool make_slurm_mark(const Store& store, const std::optional<SlurmMark>& before,
 }
 
 void add_jobs(const SlurmMark& mark) {
-  const int descriptor = ::open(mark.file.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  const int descriptor = ::open(mark.file.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0 && errno == ENOENT) return;
   if (descriptor < 0) fail_system(mark.file, "write", errno);
   write_once(mark.file, descriptor, fmt::format("{}\n", fmt::join(mark.jobs, " ")));

@@ -4,6 +4,7 @@
 #include "tracer/base/disk_error.h"
 #include "tracer/base/files.h"
 #include "tracer/base/log.h"
+#include "tracer/base/regular_file.h"
 
 #include <algorithm>
 #include <set>
@@ -23,16 +24,65 @@ fs::path path_in(const fs::path& store, Store::Kind kind, Hash128 hash) {
   return store / folder_of(kind) / hex.substr(0, 2) / hex.substr(2);
 }
 
-/// Nothing where there is none, also where it has just gone: others may take files away.
-std::optional<std::string> read_if_there(const fs::path& file) {
+/// What lies under a name.
+struct Content {
+  std::optional<std::string> text;  ///< the bytes, where they are what the name says
+  std::string fault;                ///< else what is wrong; empty: nothing is there
+  bool is_file = true;
+};
+
+/// Nothing is there also where it has just gone: others may take files away.
+Content read_content(const fs::path& file, Hash128 hash) {
   std::error_code error;
-  if (!fs::exists(file, error)) return std::nullopt;
+  if (!fs::exists(file, error)) return {};
+  if (const auto what = what_is_no_file(file)) return {{}, "wanted a file, found " + *what, false};
   try {
-    return read_text_file(file);
+    std::string text = read_text_file(file);
+    if (hash_text(text) != hash) return {{}, "a file of the store is damaged"};
+    return {std::move(text), ""};
   } catch (const Error&) {
-    if (!fs::exists(file, error)) return std::nullopt;
+    if (!fs::exists(file, error)) return {};
     throw;
   }
+}
+
+/// Calls `visit` with all that a folder has; a folder that is not there has nothing.
+template <typename Visit>
+void visit_entries(const fs::path& folder, const Visit& visit) {
+  std::error_code error;
+  fs::directory_iterator entry(folder, error);
+  for (const fs::directory_iterator end; !error && entry != end; entry.increment(error))
+    visit(*entry);
+  if (error && error != std::errc::no_such_file_or_directory)
+    fail_system(folder, "list", error.value());
+}
+
+bool is_prefix(const std::string& name) {
+  return name.size() == 2 && Hash128::from_hex(name + std::string(30, '0'));
+}
+
+/// Of what stands in a folder of a prefix, or in such a folder's place; nothing of what has gone
+/// meanwhile, and of folders that are not the store's.
+std::optional<Store::StoredFile> stored_file(const fs::directory_entry& entry, bool in_folder) {
+  const fs::path& path = entry.path();
+  const std::string name = path.filename().string();
+  Store::StoredFile found{.path = path, .hash = {}, .written = {}};
+  if (in_folder) found.hash = Hash128::from_hex(path.parent_path().filename().string() + name);
+  std::error_code vanished;
+  if (entry.is_regular_file(vanished)) {
+    found.is_temporary = process_of_temporary(name).has_value();
+    found.bytes = entry.file_size(vanished);
+    if (!vanished) found.written = entry.last_write_time(vanished);
+    if (vanished) return std::nullopt;
+    if (!in_folder && is_prefix(name)) found.fault = "wanted a folder, found a file";
+  } else if (found.hash || (!in_folder && is_prefix(name))) {
+    if (const auto what = what_is_no_file(path))
+      found.fault = fmt::format("wanted a {}, found {}", in_folder ? "file" : "folder", *what);
+    if (found.fault.empty()) return std::nullopt;
+  } else {
+    return std::nullopt;
+  }
+  return found;
 }
 
 }  // namespace
@@ -60,11 +110,10 @@ fs::path Store::path_of(Kind kind, Hash128 hash) const {
 Store::Health Store::examine(Kind kind, Hash128 hash, std::string* content) const {
   Health health = Health::absent;
   for (const fs::path& file : paths_of(kind, hash)) {
-    std::optional<std::string> text = read_if_there(file);
-    if (!text) continue;
-    health = Health::damaged;
-    if (hash_text(*text) != hash) continue;
-    if (content != nullptr) *content = std::move(*text);
+    Content found = read_content(file, hash);
+    if (!found.fault.empty()) health = Health::damaged;
+    if (!found.text) continue;
+    if (content != nullptr) *content = *std::move(found.text);
     return Health::whole;
   }
   return health;
@@ -72,18 +121,18 @@ Store::Health Store::examine(Kind kind, Hash128 hash, std::string* content) cons
 
 std::optional<std::string> Store::read_whole(Kind kind, Hash128 hash) {
   for (const fs::path& file : paths_of(kind, hash)) {
-    std::optional<std::string> text = read_if_there(file);
-    if (!text || hash_text(*text) == hash) {
-      if (text) return text;
-      continue;
-    }
-    std::string outcome = " and is made again";
+    Content found = read_content(file, hash);
+    if (found.text) return std::move(found.text);
+    if (found.fault.empty()) continue;
+    std::string outcome = mends_ ? " and is made again" : " (dsbuild build makes it again)";
     try {
-      disk_.remove(file);
-    } catch (const Error& error) {  // of somebody else, or on a medium that is read only
-      outcome = fmt::format(", and stays: {}", error.what());
+      if (mends_) disk_.remove(file);
+    } catch (
+        const Error& error) {  // of somebody else, on a medium that is read only, a full folder
+      outcome =
+          fmt::format(", and stays{}: {}", found.is_file ? "" : " (move it away)", error.what());
     }
-    warn(fmt::format("{}: a file of the store is damaged{}", file.string(), outcome));
+    warn(fmt::format("{}: {}{}", file.string(), found.fault, outcome));
   }
   return std::nullopt;
 }
@@ -147,20 +196,15 @@ bool Store::is_object(const fs::path& file, Hash128 object) const {
 void Store::visit_files(Kind kind, const std::function<void(const StoredFile&)>& visit) const {
   for (const fs::path& store : {local_, folder_}) {
     if (store.empty()) continue;
-    std::error_code error;
-    for (fs::recursive_directory_iterator entry(store / folder_of(kind), error), end;
-         !error && entry != end; entry.increment(error)) {
+    visit_entries(store / folder_of(kind), [&](const fs::directory_entry& folder) {
       std::error_code vanished;
-      if (!entry->is_regular_file(vanished)) continue;
-      const fs::path& file = entry->path();
-      StoredFile found{
-          file,
-          Hash128::from_hex(file.parent_path().filename().string() + file.filename().string()),
-          entry->file_size(vanished),
-          {}};
-      if (!vanished) found.written = entry->last_write_time(vanished);
-      if (!vanished) visit(found);
-    }
+      const auto visit_one = [&](const std::optional<StoredFile>& file) {
+        if (file) visit(*file);
+      };
+      if (!folder.is_directory(vanished)) return visit_one(stored_file(folder, false));
+      visit_entries(folder.path(),
+                    [&](const fs::directory_entry& entry) { visit_one(stored_file(entry, true)); });
+    });
   }
 }
 
@@ -175,7 +219,7 @@ void Store::remove(Kind kind, Hash128 hash) {
 
 void Store::visit_records(const std::function<void(const std::string& text)>& visit) {
   visit_files(Kind::record, [&](const StoredFile& file) {
-    if (!file.hash) return;  // a killed writer's temporary
+    if (!file.hash) return;
     if (const std::optional<std::string> text = get_record(*file.hash)) visit(*text);
   });
 }

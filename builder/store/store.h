@@ -27,8 +27,8 @@ enum class Placing {
 ///   records/ab/cdef...   what was made from which key (see made_record.h), named by the hash of
 ///   the text
 /// A file stands under its name only once it is whole and on the disk. What is read back is hashed
-/// again: a damaged file is removed, where it can be, and counts as absent, so nothing wrong leaves
-/// the store.
+/// again: a damaged file, and what is no file, is removed, where it can be, and counts as absent, so
+/// nothing wrong leaves the store.
 class Store {
  public:
   /// `local`: another store's folder, on this machine's own disk, that takes what is written; what
@@ -37,6 +37,9 @@ class Store {
       : folder_(std::move(folder)), local_(std::move(local)), disk_(disk) {}
   const std::filesystem::path& folder() const { return folder_; }
   const std::filesystem::path& local() const { return local_; }
+  /// From now on what is damaged stays where it is; it counts as absent all the same. For who only
+  /// looks.
+  void leave_damage() { mends_ = false; }
 
   /// Throws Error(io) where the disk refuses.
   Hash128 put(std::span<const std::byte> bytes);
@@ -69,16 +72,20 @@ class Store {
   /// A file of the store as it lies there, read or not.
   struct StoredFile {
     std::filesystem::path path;
-    std::optional<Hash128>
-        hash;  ///< that its name stands for; nothing: a temporary, or no file of ours
+    std::optional<Hash128> hash;  ///< that its name stands for; nothing: no file of ours
     std::uint64_t bytes = 0;
     std::filesystem::file_time_type written;
+    bool is_temporary = false;  ///< half-written, maybe by who was killed
+    std::string fault{};        ///< what stands there in its place: "wanted a file, found a folder"
   };
   enum class Kind { object, record };
+  /// Throws Error(io) where a folder of the store cannot be listed: what is not seen is not to be taken
+  /// for absent.
   void visit_files(Kind kind, const std::function<void(const StoredFile&)>& visit) const;
   enum class Health { absent, whole, damaged };
   /// Reads the file, or else the one of the same name that is not local, and leaves all as it is.
-  /// `content` is filled where it is whole. Throws Error(io) where a file is there and cannot be read.
+  /// `content` is filled where it is whole. What is no file is damaged. Throws Error(io) where a file
+  /// is there and cannot be read.
   Health examine(Kind kind, Hash128 hash, std::string* content = nullptr) const;
   /// The text of a record, where it is whole.
   std::optional<std::string> get_record(Hash128 record);
@@ -94,6 +101,7 @@ class Store {
 
   std::filesystem::path folder_, local_;
   Disk& disk_;
+  bool mends_ = true;
 };
 
 }  // namespace ds

@@ -32,15 +32,23 @@ void set_aside(const fs::path& file) {
 
 /// Enters what all records tell of.
 void refill(Database& database, Store& store) {
+  std::uint64_t unreadable = 0;
+  std::string first;
   Transaction transaction(database.connection());
   store.visit_records([&](const std::string& text) {
     try {
       enter_record(database, text);
     } catch (const UnreadableRecord& error) {
-      warn(error.what());  // of another version: what it tells of is made again
+      if (++unreadable == 1) first = error.what();
     }
   });
   transaction.commit();
+  if (unreadable > 0)
+    warn(fmt::format(
+        "{}: {} record{} of another dsbuild's form, left as {}; what {} of is made "
+        "again where it is wanted ({})",
+        store.folder().string(), unreadable, unreadable == 1 ? "" : "s",
+        unreadable == 1 ? "it is" : "they are", unreadable == 1 ? "it tells" : "they tell", first));
 }
 
 /// A damaged one is set aside.
@@ -131,6 +139,17 @@ void put_database(const Store& store, Database& database, const fs::path& folder
 
 bool is_read_only(const fs::path& folder) {
   return ::access(folder.c_str(), W_OK) != 0 && (errno == EROFS || errno == EACCES);
+}
+
+void refuse_read_only(const fs::path& folder) {
+  if (!is_read_only(folder)) return;
+  fail(
+      ErrorKind::io,
+      "{0}: cannot write there: {1}; a build keeps what it makes in its store, also where that has "
+      "all: dsbuild store gather {0} MINE takes what it has into one of your own, for build "
+      "--store "
+      "MINE",
+      folder.string(), std::generic_category().message(errno));
 }
 
 }  // namespace ds

@@ -42,5 +42,7 @@ void put_database(const Store& store, Database& database, const std::filesystem:
 /// Whether this process may not write into the folder: it is another user's, or its disk is mounted
 /// read-only.
 bool is_read_only(const std::filesystem::path& folder);
+/// Throws Error(io), with what to do, where a build's store may not be written to.
+void refuse_read_only(const std::filesystem::path& folder);
 
 }  // namespace ds

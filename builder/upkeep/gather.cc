@@ -40,8 +40,8 @@ class Gathering {
   };
   void look_at(Hash128 record);
   void take_object(Hash128 object);
-  bool is_there(Hash128 object);
   void fault(Kind kind, Hash128 hash, const std::string& why);
+  std::vector<Hash128> records_of_other();
   void flush();
   void remove(Kind kind, Hash128 hash);
   void count_unrecorded();
@@ -76,17 +76,10 @@ void Gathering::fault(Kind kind, Hash128 hash, const std::string& why) {
   result_.faults.push_back(fmt::format("{}: {}", name_of(from_, kind, hash), why));
 }
 
-/// Before the one here is removed the other is read.
-bool Gathering::is_there(Hash128 object) {
-  if (request_.move) return to_.intact(object);
-  const auto size = size_of(to_, object);
-  return size && size == size_of(from_, object).value_or(*size);
-}
-
 void Gathering::take_object(Hash128 object) {
   if (!seen_.insert(object).second) return;
   std::string bytes;
-  if (is_there(object)) {
+  if (to_.intact(object)) {
     result_.there.add(size_of(to_, object).value_or(0));
     named_.push_back(object);
     return;
@@ -174,15 +167,24 @@ void Gathering::flush() {
 
 void Gathering::count_unrecorded() {
   from_.visit_files(Kind::object, [&](const Store::StoredFile& file) {
-    if (file.hash && !seen_.contains(*file.hash)) result_.unrecorded.add(file.bytes);
+    if (file.hash && file.fault.empty() && !seen_.contains(*file.hash))
+      result_.unrecorded.add(file.bytes);
   });
 }
 
-GatherResult Gathering::run() {
+std::vector<Hash128> Gathering::records_of_other() {
   std::vector<Hash128> all;
   from_.visit_files(Kind::record, [&](const Store::StoredFile& file) {
-    if (file.hash) all.push_back(*file.hash);
+    if (!file.fault.empty())
+      result_.faults.push_back(fmt::format("{}: {}", file.path.string(), file.fault));
+    else if (file.hash)
+      all.push_back(*file.hash);
   });
+  return all;
+}
+
+GatherResult Gathering::run() {
+  const std::vector<Hash128> all = records_of_other();
   std::uint64_t done = 0;
   for (const Hash128 record : all) {
     if (stop_)

@@ -72,51 +72,85 @@ Named named_by(Database& database, std::vector<DatasetUse>& datasets, bool forge
   return named;
 }
 
-/// False for a temporary that a killed writer left, which is noted.
+/// False for what is no object or record, which is noted.
 bool is_ours(const Store::StoredFile& file, StoreUse& use, const std::atomic<bool>& stop) {
   if (stop) fail(ErrorKind::cancelled, "stopped; nothing is removed");
-  if (file.hash) return true;
-  use.temporaries.push_back(file.path);
-  use.temporary_bytes += file.bytes;
+  if (!file.fault.empty()) {
+    use.faults.push_back(fmt::format("{}: {}", file.path.string(), file.fault));
+  } else if (file.is_temporary) {
+    use.temporaries.push_back(file.path);
+    use.temporary_bytes += file.bytes;
+  } else if (!file.hash) {
+    use.strangers.push_back(file.path);
+  } else {
+    return true;
+  }
   return false;
 }
 
-/// Reads all records. The sums of a film, by which it can be gone on with, are named where its film or
-/// picture is.
-void look_at_records(Store& store, const Named& named, HashSet& objects, HashSet& products,
+/// Enters every hash that a record of another form holds: one of them may be an object's.
+void name_all_hashes(const std::string& text, HashSet& objects) {
+  constexpr std::size_t k_digits = 32;
+  const auto is_digit = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = at;
+    while (end < text.size() && is_digit(text[end]))
+      ++end;
+    if (end - at == k_digits)
+      if (const auto hash = Hash128::from_hex(std::string_view(text).substr(at, k_digits)))
+        objects.insert(*hash);
+    at = end + 1;
+  }
+}
+
+/// Whether a dataset names what the record tells of, which is entered then. The sums of a film, by
+/// which it can be gone on with, are named where its film or picture is.
+bool enter_named(const std::vector<MadeProduct>& made, const Named& named, HashSet& objects,
+                 HashSet& products) {
+  const auto is_named = [&](const MadeProduct& one) {
+    return named.products.contains(one.product.key);
+  };
+  // A mask may be of many pictures: it keeps none of them.
+  const bool of_named_picture = std::any_of(made.begin(), made.end(), [&](const MadeProduct& one) {
+    return is_named(one) && (one.product.kind == "film" || one.product.kind == "image");
+  });
+  bool any = false;
+  for (const MadeProduct& one : made) {
+    if (!is_named(one) && !(of_named_picture && one.product.kind == k_sums_kind)) continue;
+    any = true;
+    objects.insert(one.product.object);
+    products.insert(one.product.key);
+  }
+  return any;
+}
+
+/// Reads all records.
+void look_at_records(const Store& store, const Named& named, HashSet& objects, HashSet& products,
                      StoreUse& use, const std::atomic<bool>& stop) {
   store.visit_files(Store::Kind::record, [&](const Store::StoredFile& file) {
     if (!is_ours(file, use, stop)) return;
     StoreFileUse found{Store::Kind::record, *file.hash, file.bytes, file.written, false};
-    if (const std::optional<std::string> text = store.get_record(*file.hash)) {
+    std::string text;
+    const Store::Health health = store.examine(Store::Kind::record, *file.hash, &text);
+    if (health == Store::Health::absent) return;  // it has just gone
+    if (health == Store::Health::damaged) {
+      use.faults.push_back(fmt::format("{}: is damaged", file.path.string()));
+    } else {
       try {
-        const std::vector<MadeProduct> made = from_record(*text);
-        const auto is_named = [&](const MadeProduct& one) {
-          return named.products.contains(one.product.key);
-        };
-        // A mask may be of many pictures: it keeps none of them.
-        const bool of_named_picture =
-            std::any_of(made.begin(), made.end(), [&](const MadeProduct& one) {
-              return is_named(one) && (one.product.kind == "film" || one.product.kind == "image");
-            });
-        for (const MadeProduct& one : made) {
-          if (!is_named(one) && !(of_named_picture && one.product.kind == k_sums_kind)) continue;
-          found.is_named = true;
-          objects.insert(one.product.object);
-          products.insert(one.product.key);
-        }
+        found.is_named = enter_named(from_record(text), named, objects, products);
       } catch (const UnreadableRecord&) {
-        // Of another version, which may know more of it.
+        ++use.unreadable;
         found.is_named = true;
+        name_all_hashes(text, objects);
       }
-      use.files.push_back(std::move(found));
     }
+    use.files.push_back(std::move(found));
   });
 }
 
 }  // namespace
 
-StoreUse look_at_store(Store& store, Database& database, bool forget_gone,
+StoreUse look_at_store(const Store& store, Database& database, bool forget_gone,
                        const std::atomic<bool>& stop) {
   StoreUse use;
   use.datasets = datasets_of(store, database);

@@ -44,6 +44,10 @@ struct StoreUse {
   /// Folders of datasets of this store that its database does not know.
   std::vector<std::filesystem::path> unknown;
   std::vector<StoreFileUse> files;
+  std::vector<std::string> faults;  ///< a line for each record that is damaged or no file
+  std::uint64_t unreadable =
+      0;  ///< records of another dsbuild's form: they and what they name stay
+  std::vector<std::filesystem::path> strangers;    ///< files that are not the store's: left alone
   std::vector<std::filesystem::path> temporaries;  ///< of killed writers
   std::uint64_t temporary_bytes = 0;
   std::map<std::string, Amount> by_kind;  ///< named objects by what they are: "image", "film"
@@ -52,8 +56,8 @@ struct StoreUse {
 };
 
 /// `forget_gone`: as if datasets whose folder is gone named nothing. Reads the database and every
-/// record, not the objects. Throws Error(cancelled) where `stop` is set.
-StoreUse look_at_store(Store& store, Database& database, bool forget_gone,
+/// record, not the objects, and leaves all as it is. Throws Error(cancelled) where `stop` is set.
+StoreUse look_at_store(const Store& store, Database& database, bool forget_gone,
                        const std::atomic<bool>& stop);
 
 }  // namespace ds

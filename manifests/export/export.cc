@@ -11,10 +11,10 @@
 #include "tracer/base/files.h"
 #include "tracer/base/hash_stream.h"
 #include "tracer/base/nearest.h"
+#include "tracer/base/regular_file.h"
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <set>
 #include <string_view>
 
@@ -51,7 +51,7 @@ bool matches_value(const ImageRecord& image, std::string_view key, std::string_v
 template <typename Visit>
 void visit_images(const fs::path& folder, const Visit& visit) {
   const fs::path file = folder / k_images;
-  std::ifstream lines(file);
+  std::ifstream lines = regular_stream(file);
   if (!lines) fail(ErrorKind::io, "{}: cannot be read", file.string());
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number)

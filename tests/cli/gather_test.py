@@ -3,6 +3,7 @@
 and nothing that is damaged is taken."""
 import os
 import shutil
+import signal
 import time
 
 from harness import IMAGES, TinyCase, main
@@ -94,6 +95,26 @@ class GatherTest(TinyCase):
             if kill + 1 < KILLS:
                 shutil.rmtree(self.store)
         print(f"{partly} of {KILLS} kills came in the middle")
+        self.assert_as_one_machine()
+
+    def test_told_to_stop_at_any_moment(self):
+        self.build("--store", self.a)
+        wanted, told = self.files(self.a), 0
+        begin = time.monotonic()
+        self.gather(self.a)
+        seconds = time.monotonic() - begin
+        for number in range(KILLS):
+            shutil.rmtree(self.store)
+            stop = (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1)[number % 3]
+            process = self.start("store", "gather", self.a, self.store)
+            time.sleep(seconds * (0.2 + 0.9 * number / KILLS))
+            process.send_signal(stop)
+            process.communicate(timeout=60)
+            self.assertIn(process.returncode, (0, -stop))
+            told += process.returncode != 0
+            self.gather(self.a)
+            self.assertEqual(self.files(self.store), wanted)
+        self.assertGreater(told, 0)
         self.assert_as_one_machine()
 
     def test_several_at_once(self):

@@ -6,6 +6,7 @@ import os
 import pty
 import re
 import resource
+import shutil
 import signal
 import struct
 import subprocess
@@ -102,6 +103,29 @@ class SignalTest(ProcessCase):
         time.sleep(1.0)
         self.assertIsNone(process.poll())
         return process
+
+    def test_verbs_that_read_end_by_their_signal_and_leave_nothing(self):
+        self.build()
+        before, store = self.contents(), self.out / ".dsbuild"
+        to = self.folder / "to"
+        for words in (("verify", self.out), ("verify", self.out, "--rerender", "8"), ("store", "verify", store),
+                      ("store", "gather", store, to), ("diff", self.out, self.out),
+                      ("export", self.out, "--format", "csv", "-o", to), ("gallery", self.out, "-o", to)):
+            for stop in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1):
+                # Stopped at once, so that it cannot have ended before the signal comes.
+                process = self.start(*words)
+                self.addCleanup(process.kill)
+                time.sleep(0.02)
+                process.send_signal(signal.SIGSTOP)
+                process.send_signal(stop)
+                process.send_signal(signal.SIGCONT)
+                process.communicate(timeout=60)
+                self.assertIn(process.returncode, (0, -stop), words)
+                if words[0] in ("export", "gallery") and process.returncode != 0:
+                    self.assertFalse(to.exists())
+                shutil.rmtree(to, ignore_errors=True)
+        self.assertEqual(self.contents(), before)
+        self.assertEqual(self.run_it("store", "verify", store).code, 0)
 
     def test_two_at_once_are_one_wish(self):
         # A terminal that goes away and timeout(1) both tell it twice.

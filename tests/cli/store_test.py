@@ -31,6 +31,14 @@ class StoreTest(TinyCase):
     def assert_nothing_to_do(self, out, *arguments):
         self.assert_counts(self.make(out, *arguments), built=0, reused=IMAGES, traced=0)
 
+    def mount_read_only(self):
+        for words in (["--bind", self.store], ["-o", "remount,bind,ro"]):
+            done = subprocess.run(["mount", *words, self.store], capture_output=True, text=True, check=False)
+            if done.returncode != 0:
+                self.skipTest(f"cannot mount here: {done.stderr.strip()}")
+            if words[0] == "--bind":
+                self.addCleanup(subprocess.run, ["umount", self.store], check=True)
+
     def test_what_no_dataset_names_goes(self):
         self.make("a")
         wanted = self.files("objects") | self.files("records")
@@ -125,12 +133,7 @@ class StoreTest(TinyCase):
             data = victim.read_bytes()
             victim.chmod(0o644)
             victim.write_bytes(bytes([data[0] ^ 1]) + data[1:])
-        for words in (["--bind", self.store], ["-o", "remount,bind,ro"]):
-            done = subprocess.run(["mount", *words, self.store], capture_output=True, text=True, check=False)
-            if done.returncode != 0:
-                self.skipTest(f"cannot mount here: {done.stderr.strip()}")
-            if words[0] == "--bind":
-                self.addCleanup(subprocess.run, ["umount", self.store], check=True)
+        self.mount_read_only()
         run = self.run_it("store", "verify", self.store, "--json")
         self.assertEqual((run.code, run.json["damaged"], run.json["not_removed"]), (1, 3, 3), run)
         for victim in victims:
@@ -156,23 +159,65 @@ class StoreTest(TinyCase):
         self.make("a", "--set", "engine.spp=2")
         self.task("verify")
 
+    def test_stats_tells_of_datasets_with_a_database_elsewhere(self):
+        self.make("a", "--database", self.folder / "db", "--shard", "1/2")
+        run = self.run_it("store", "stats", self.store)
+        self.assertIn("it knows no dataset: what builds of a part made with --database", run.out)
+        # Before its end, when it leaves a copy in the store.
+        build = self.start("build", self.recipe, "-o", self.folder / "a", "--store", self.store, "--database",
+                           self.folder / "db", "--set", "engine.spp=20000")
+        self.addCleanup(build.kill)
+        while not list(self.store.glob("datasets/[0-9a-f]*")):
+            time.sleep(0.01)
+        build.kill()
+        build.communicate(timeout=60)
+        run = self.run_it("store", "stats", self.store)
+        self.assertIn(f"{self.folder / 'a'}: a dataset whose builds keep their database elsewhere (--database)", run.out)
+        self.assertIn("no dataset that is known names: ", run.out)
+        self.assertEqual(self.task("stats")["elsewhere"], [str(self.folder / "a")])
+        self.make("a")
+        self.assertEqual(self.task("stats")["elsewhere"], [])
+
+    def test_a_build_from_a_store_that_may_not_be_written_to_says_what_to_do(self):
+        self.make("a")
+        self.mount_read_only()
+        run = self.run_it("build", self.recipe, "-o", self.folder / "b", "--store", self.store)
+        self.assertEqual(run.code, 1, run)
+        self.assertIn(f"{self.store}: cannot write there: Read-only file system; ", run.err)
+        self.assertIn(f"dsbuild store gather {self.store} MINE takes what it has into one of your own", run.err)
+        mine = self.folder / "mine"
+        self.assertEqual(self.run_it("store", "gather", self.store, mine).code, 0)
+        run = self.run_it("build", self.recipe, "-o", self.folder / "b", "--store", mine, "--json")
+        self.assert_counts(run.json, built=IMAGES, traced=0)
+
     def running(self):
         with sqlite3.connect(f"file:{self.store / 'dsbuild.sqlite'}?mode=ro", uri=True) as database:
             return database.execute("SELECT count(*) FROM build WHERE outcome = 'running'").fetchone()[0]
 
     def test_killed_at_any_moment_it_leaves_a_whole_store(self):
         self.make("a")
-        wanted = self.contents(self.folder / "a")
-        for kill in range(KILLS):
+        wanted, seconds, partly = self.contents(self.folder / "a"), 0, 0
+        for kill in range(-1, KILLS):
             self.make("a", "--set", f"engine.spp={2 + kill % 3}")
             self.make("a")
+            before = self.files("objects") | self.files("records")
+            begin = time.monotonic()
             collector = self.start("store", "gc", self.store)
-            time.sleep(0.002 * kill)
-            collector.kill()
+            if kill >= 0:  # the first is measured
+                time.sleep(seconds * (0.3 + 0.8 * kill / KILLS))
+                collector.kill()
             collector.communicate(timeout=60)
+            if kill < 0:
+                seconds = time.monotonic() - begin
+            left = self.files("objects") | self.files("records")
+            self.assertLessEqual(left, before)
+            partly += len(before) > len(left) and self.task("gc", "-n")["objects"]["files"] > 0
             self.assert_nothing_to_do("a")
             self.assertEqual(self.contents(self.folder / "a"), wanted)
             self.task("verify")
+            if kill % 2:  # every other one is killed again in what the one before left
+                self.task("gc")
+        print(f"{partly} of {KILLS} kills came in the middle")
         self.task("gc")
         self.assertEqual(self.task("stats")["unnamed"]["files"], 0, "the next run finds what is left")
 

@@ -3,6 +3,7 @@
 
 #include "tracer/base/files.h"
 #include "tracer/base/hash.h"
+#include "tracer/base/regular_file.h"
 #include "tracer/base/temporary_file.h"
 
 #include <linux/fs.h>
@@ -56,7 +57,7 @@ bool keeps_by_syncfs(const Descriptor& folder) {
 }
 
 bool reflink(const fs::path& from, const fs::path& to) {
-  const Descriptor source(from, O_RDONLY);
+  const Descriptor source = open_regular(from);
   Descriptor target(to, k_write_new);
   const bool cloned = ::ioctl(target.get(), FICLONE, source.get()) == 0;
   target.close();

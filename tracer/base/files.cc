@@ -5,11 +5,11 @@
 #include "tracer/base/file_batch.h"
 #include "tracer/base/file_writer.h"
 #include "tracer/base/hash.h"
+#include "tracer/base/regular_file.h"
 #include "tracer/base/temporary_file.h"
 
+#include <algorithm>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <sys/stat.h>
@@ -23,14 +23,18 @@ namespace fs = std::filesystem;
 }  // namespace
 
 std::string read_text_file(const fs::path& path) {
-  std::error_code
-      unknown;  // what keeps us from looking keeps us from opening too, and is told then
-  if (fs::is_directory(path, unknown))
-    fail(ErrorKind::io, "{}: wanted a file, found a folder", path.string());
-  std::ifstream in(path, std::ios::binary);
-  if (!in) fail_errno(path, "open");
-  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (in.bad()) fail_errno(path, "read");
+  const Descriptor file = open_regular(path);
+  struct stat info {};
+  if (::fstat(file.get(), &info) != 0) fail_errno(path, "look at");
+  // One byte more than it has, so that its end is seen at once; those of /proc tell no size.
+  constexpr std::size_t k_least = 4096;
+  std::string text(std::max(k_least, static_cast<std::size_t>(info.st_size) + 1), '\0');
+  std::size_t size = 0;
+  while (const std::size_t got = file.read(std::span(text).subspan(size))) {
+    size += got;
+    if (size == text.size()) text.resize(2 * size);
+  }
+  text.resize(size);
   return text;
 }
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/base/hash.h"
 
+#include "tracer/base/disk_error.h"
 #include "tracer/base/error.h"
 #include "tracer/base/hash_stream.h"
 #include "tracer/base/hex_text.h"
+#include "tracer/base/regular_file.h"
 
 #include <xxhash.h>
 
 #include <array>
-#include <cstdio>
 #include <memory>
 #include <openssl/evp.h>
 #include <vector>
@@ -48,9 +49,6 @@ class Sha256 {
   std::unique_ptr<EVP_MD_CTX, DigestDeleter> context_;
 };
 
-struct FileCloser {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
 Hash128 from_xxh(XXH128_hash_t hash) {
   return {hash.high64, hash.low64};
 }
@@ -154,12 +152,14 @@ namespace {
 /// Calls `visit` with the file's bytes, a block after the other.
 template <typename Visit>
 void visit_blocks(const std::filesystem::path& path, const Visit& visit) {
-  const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.c_str(), "rb"));
-  if (!file) fail(ErrorKind::io, "{}: cannot be opened for reading", path.string());
-  std::vector<char> block(1 << 16);
-  while (const std::size_t got = std::fread(block.data(), 1, block.size(), file.get()))
-    visit(std::string_view(block.data(), got));
-  if (std::ferror(file.get()) != 0) fail(ErrorKind::io, "{}: cannot be read", path.string());
+  try {
+    const Descriptor file = open_regular(path);
+    std::vector<char> block(1 << 16);
+    while (const std::size_t got = file.read(block))
+      visit(std::string_view(block.data(), got));
+  } catch (const DiskFailed& error) {  // a bad block of one file is no reason to write no other
+    fail(ErrorKind::io, "{}", error.what());
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <random>
 #include <unistd.h>
 #include <utility>
@@ -27,8 +28,10 @@ void fail_errno(const std::filesystem::path& path, const char* what) {
 
 Descriptor::Descriptor(const std::filesystem::path& path, int flags,
                        const std::filesystem::path& name)
-    : path_(name), fd_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {
-  if (fd_ < 0) fail_errno(name, "open");
+    : Descriptor(::open(path.c_str(), flags | O_CLOEXEC, 0666), name) {}
+
+Descriptor::Descriptor(int opened, const std::filesystem::path& path) : path_(path), fd_(opened) {
+  if (fd_ < 0) fail_errno(path, "open");
 }
 
 Descriptor::Descriptor(Descriptor&& other) noexcept
@@ -44,6 +47,14 @@ void Descriptor::write(std::span<const std::byte> bytes) const {
     if (done < 0 && errno == EINTR) continue;
     if (done < 0) fail_errno(path_, "write");
     bytes = bytes.subspan(static_cast<std::size_t>(done));
+  }
+}
+
+std::size_t Descriptor::read(std::span<char> bytes) const {
+  for (;;) {
+    const ssize_t done = ::read(fd_, bytes.data(), bytes.size());
+    if (done >= 0) return static_cast<std::size_t>(done);
+    if (errno != EINTR) fail_errno(path_, "read");
   }
 }
 
@@ -74,6 +85,21 @@ void TemporaryName::rename_to(const std::filesystem::path& target) {
   if (::rename(path_.c_str(), target.c_str()) != 0)
     fail_errno(target, "rename a finished temporary to");
   renamed_ = true;
+}
+
+std::optional<std::int64_t> process_of_temporary(std::string_view name) {
+  constexpr std::string_view k_ending = ".tmp";
+  if (!name.starts_with('.') || !name.ends_with(k_ending)) return std::nullopt;
+  name.remove_suffix(k_ending.size());
+  const std::size_t count = name.rfind('.');
+  if (count == 0 || count == std::string_view::npos) return std::nullopt;
+  const std::size_t process = name.rfind('.', count - 1);
+  if (process == 0 || process == std::string_view::npos) return std::nullopt;
+  const std::string_view digits = name.substr(process + 1, count - process - 1);
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+  return number;
 }
 
 std::filesystem::path prepare_target(const std::filesystem::path& path) {

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <fcntl.h>
 #include <filesystem>
+#include <optional>
 #include <span>
+#include <string_view>
 
 namespace ds {
 
@@ -18,12 +21,16 @@ class Descriptor {
   Descriptor(const std::filesystem::path& path, int flags) : Descriptor(path, flags, path) {}
   /// Errors are told of `name`.
   Descriptor(const std::filesystem::path& path, int flags, const std::filesystem::path& name);
+  /// Takes over what ::open gave for `path`; -1: throws what errno says.
+  Descriptor(int opened, const std::filesystem::path& path);
   Descriptor(Descriptor&& other) noexcept;
   Descriptor& operator=(Descriptor&&) = delete;
   ~Descriptor();
   int get() const { return fd_; }
   /// Writes all of it.
   void write(std::span<const std::byte> bytes) const;
+  /// Bytes read, as many as there are up to so many; 0 at the end.
+  std::size_t read(std::span<char> bytes) const;
   void sync() const;
   void close();
 
@@ -52,6 +59,10 @@ class TemporaryName {
   std::filesystem::path path_;
   bool renamed_ = false;
 };
+
+/// The process that made a temporary of that name, in whatever folder; nothing for other names. Older
+/// ones began with the target's name: ".NAME.PROCESS.COUNT.tmp".
+std::optional<std::int64_t> process_of_temporary(std::string_view name);
 
 /// A target with a parent folder, which exists.
 std::filesystem::path prepare_target(const std::filesystem::path& path);
