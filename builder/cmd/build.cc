@@ -10,6 +10,7 @@
 #include "builder/make/execute.h"
 #include "builder/make/sole_plan.h"
 #include "builder/plan/lacking.h"
+#include "builder/store/guest.h"
 #include "builder/store/store_database.h"
 #include "tracer/base/error.h"
 #include "tracer/base/log.h"
@@ -188,6 +189,15 @@ void remove_mark(const Dataset& dataset) {
   if (mark && mark->folder == dataset.folder) std::filesystem::remove(mark->file, ignored);
 }
 
+/// Where no lock in the store tells of this build. Jobs of Slurm have a mark for all of them.
+std::optional<Guest> enter_as_guest(const Arguments& arguments, const Dataset& dataset) {
+  if (arguments.database_folder.empty() || find_slurm_mark(*dataset.store)) return std::nullopt;
+  return Guest::build(*dataset.store, dataset.recipe.file.string(), [&](const std::string& who) {
+    say(Stream::people, "dsbuild: {}: waits for dsbuild store gc, {}\n",
+        dataset.store->folder().string(), who);
+  });
+}
+
 }  // namespace
 
 int run_build(const Arguments& arguments) {
@@ -213,6 +223,7 @@ int run_build(const Arguments& arguments) {
   };
   Dataset dataset = open_dataset(request, Access::build, disk);
   check_local(*dataset.store);
+  const std::optional<Guest> guest = enter_as_guest(arguments, dataset);
   const auto waits_for = [&](const std::string& who) {
     say(Stream::people, "dsbuild: {}: waiting for another build that makes something else: {}\n",
         dataset.folder.string(), who);

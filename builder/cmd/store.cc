@@ -7,6 +7,7 @@
 #include "builder/cmd/verbs.h"
 #include "builder/cmd/work_progress.h"
 #include "builder/forecast/budget.h"
+#include "builder/store/guest.h"
 #include "builder/store/store_database.h"
 #include "builder/upkeep/collect.h"
 #include "tracer/base/error.h"
@@ -208,6 +209,8 @@ int run_gc(const Arguments& arguments, Disk& disk) {
   }
   if (!arguments.size.empty()) request.most_bytes = parse_bytes(arguments.size);
   const OpenStore open = open_store(arguments, !arguments.dry_run, disk);
+  std::optional<Guest> guest;
+  if (!arguments.dry_run) guest.emplace(Guest::collect(*open.store));
   const StoreUse use =
       look_at_store(*open.store, *open.database, arguments.forget, stop_on_signal());
   check_all_known(*open.store, use);

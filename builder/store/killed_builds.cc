@@ -31,12 +31,15 @@ bool has_ended(std::int64_t process) {
 
 /// Whether another process of this number runs on this machine.
 bool runs_elsewhere(std::int64_t process) {
-  if (process == ::getpid()) return false;
-  const bool is_there = ::kill(static_cast<pid_t>(process), 0) == 0 || errno == EPERM;
-  return is_there && !has_ended(process);
+  return process != ::getpid() && is_running(process);
 }
 
 }  // namespace
+
+bool is_running(std::int64_t process) {
+  const bool is_there = ::kill(static_cast<pid_t>(process), 0) == 0 || errno == EPERM;
+  return is_there && !has_ended(process);
+}
 
 void remove_temporaries(const fs::path& folder) {
   // Another process may remove or rename what is being looked at; what vanishes needs no removal.

@@ -8,6 +8,9 @@
 
 namespace ds {
 
+/// Whether there is such a process on this machine that has not ended.
+bool is_running(std::int64_t process);
+
 /// Whether a build that the log has as "running" ended without saying so: on this machine, and its
 /// process is gone.
 bool was_killed(const BuildRow& build);

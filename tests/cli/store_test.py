@@ -159,6 +159,54 @@ class StoreTest(TinyCase):
         self.make("a", "--set", "engine.spp=2")
         self.task("verify")
 
+    def test_gc_and_builds_with_a_database_of_their_own_know_of_each_other(self):
+        guests = self.store / "guests"
+        self.make("a", "--set", "engine.spp=2")
+        words = ("build", self.recipe, "-o", self.folder / "a", "--store", self.store, "--database", self.folder / "db")
+        build = self.start(*words, "--set", "engine.spp=20000")
+        self.addCleanup(build.kill)
+        records, deadline = len(self.files("records")), time.monotonic() + 60
+        while len(self.files("records")) < records + 2:
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+        before = len(self.files("records"))
+        run = self.run_it("store", "gc", self.store)
+        self.assertEqual(run.code, 2, run)
+        self.assertRegex(run.err, r"process \d+ on .* works in it with a database of its own \(build .*recipe.toml\)")
+        self.assertGreaterEqual(len(self.files("records")), before)
+        self.assertEqual(self.run_it("store", "gc", "-n", self.store).code, 0, "that removes nothing")
+        build.send_signal(signal.SIGINT)
+        build.communicate(timeout=60)
+        self.assertEqual(list(guests.iterdir()), [])
+        # Killed on this machine, it is known to be gone; on another, nobody can tell.
+        host = os.uname().nodename
+        (guests / f"{host}.{self.dead_process()}").write_text("build it")
+        self.task("gc")
+        self.assertEqual(list(guests.iterdir()), [])
+        (guests / "elsewhere.17").write_text("build it")
+        run = self.run_it("store", "gc", self.store)
+        self.assertEqual(run.code, 2, run)
+        self.assertIn(f"process 17 on elsewhere works in it with a database of its own (build it)", run.err)
+        self.assertIn(f"remove {guests / 'elsewhere.17'} if it has", run.err)
+        (guests / "elsewhere.17").unlink()
+        # A build waits for a collection.
+        (guests / f"{host}.{os.getpid()}").write_text("gc")
+        build = self.start(*words)
+        self.addCleanup(build.kill)
+        time.sleep(1)
+        self.assertIsNone(build.poll())
+        (guests / f"{host}.{os.getpid()}").unlink()
+        err = build.communicate(timeout=120)[1]
+        self.assertEqual(build.returncode, 0, err)
+        self.assertIn(f"waits for dsbuild store gc, process {os.getpid()} on {host}", err)
+        self.task("gc")
+        self.task("verify")
+
+    def dead_process(self):
+        with subprocess.Popen(["true"]) as process:
+            process.wait()
+        return process.pid
+
     def test_stats_tells_of_datasets_with_a_database_elsewhere(self):
         self.make("a", "--database", self.folder / "db", "--shard", "1/2")
         run = self.run_it("store", "stats", self.store)

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "builder/store/guest.h"
+
+#include "builder/store/host.h"
+#include "builder/store/killed_builds.h"
+#include "tracer/base/disk_error.h"
+#include "tracer/base/error.h"
+#include "tracer/base/files.h"
+
+#include <charconv>
+#include <chrono>
+#include <system_error>
+#include <thread>
+#include <unistd.h>
+#include <utility>
+
+namespace ds {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* k_collects = "gc";
+/// How often a build looks whether the collection has ended.
+constexpr std::chrono::milliseconds k_poll{100};
+
+std::string own_host() {
+  const std::string host = host_name();
+  return host.empty() ? "unknown" : host;
+}
+
+struct Name {
+  std::string host;
+  std::int64_t process = 0;
+};
+
+std::optional<Name> name_of(const fs::path& file) {
+  const std::string text = file.filename().string();
+  const std::size_t dot = text.rfind('.');
+  if (dot == 0 || dot == text.npos) return std::nullopt;
+  Name name{text.substr(0, dot), 0};
+  const auto [end, error] =
+      std::from_chars(text.data() + dot + 1, text.data() + text.size(), name.process);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return name;
+}
+
+/// Nothing where it has just gone.
+std::optional<std::string> text_of(const fs::path& file) {
+  try {
+    return read_text_file(file);
+  } catch (const Error&) {
+    std::error_code error;
+    if (!fs::exists(file, error)) return std::nullopt;
+    throw;
+  }
+}
+
+}  // namespace
+
+Guest::Guest(const Store& store, const std::string& text)
+    : file_(store.folder() / "guests" / fmt::format("{}.{}", own_host(), ::getpid())) {
+  write_file_atomic(file_, text);
+}
+
+Guest::Guest(Guest&& other) noexcept : file_(std::exchange(other.file_, {})) {}
+
+Guest::~Guest() {
+  if (!file_.empty()) ::unlink(file_.c_str());
+}
+
+std::optional<Guest::Other> Guest::find_other(bool that_collects) const {
+  std::error_code error;
+  std::optional<Other> found;
+  for (fs::directory_iterator entry(file_.parent_path(), error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::optional<Name> name = name_of(entry->path());
+    if (!name || entry->path() == file_) continue;
+    if (name->host == own_host() && !is_running(name->process)) {
+      ::unlink(entry->path().c_str());
+      continue;
+    }
+    const std::optional<std::string> text = text_of(entry->path());
+    if (text && (*text == k_collects) == that_collects)
+      found = {entry->path(), *text, fmt::format("process {} on {}", name->process, name->host)};
+  }
+  if (error) fail_system(file_.parent_path(), "list", error.value());
+  return found;
+}
+
+Guest Guest::build(const Store& store, const std::string& what,
+                   const std::function<void(const std::string& who)>& waits_for) {
+  Guest guest(store, "build " + what);
+  for (bool told = false;; told = true) {
+    const std::optional<Other> other = guest.find_other(true);
+    if (!other) return guest;
+    if (!told)
+      waits_for(fmt::format("{} (remove {} if it has ended)", other->who, other->file.string()));
+    std::this_thread::sleep_for(k_poll);
+  }
+}
+
+Guest Guest::collect(const Store& store) {
+  Guest guest(store, k_collects);
+  if (const std::optional<Other> other = guest.find_other(false))
+    fail(ErrorKind::usage,
+         "{}: {} works in it with a database of its own ({}), so what it names is not known here; "
+         "collect when that has ended, or remove {} if it has",
+         store.folder().string(), other->who, other->text, other->file.string());
+  return guest;
+}
+
+}  // namespace ds

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "builder/store/store.h"
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace ds {
+
+/// Who works in a store without a lock of its own there, since its database and locks are elsewhere
+/// (--database), and who collects it, tell each other by a file each in the store's `guests`:
+///   HOST.PROCESS   its text is "gc" or "build", and what is built
+/// Each writes its own file before it looks for the others', so that of two that come at once at least
+/// one sees the other. Files of processes of this machine that have gone are taken away by who comes
+/// next; what was killed on another machine leaves one that somebody has to remove, since nobody can
+/// tell.
+class Guest {
+ public:
+  /// Builds into the store: waits for a collection, which `waits_for` is told once. Throws Error(io).
+  static Guest build(const Store& store, const std::string& what,
+                     const std::function<void(const std::string& who)>& waits_for);
+  /// Collects the store. Throws Error(usage) where others build into it, and names them.
+  static Guest collect(const Store& store);
+  ~Guest();
+  Guest(Guest&& other) noexcept;
+  Guest& operator=(Guest&&) = delete;
+
+ private:
+  Guest(const Store& store, const std::string& text);
+  struct Other {
+    std::filesystem::path file;
+    std::string text;
+    std::string who;  ///< "process 17 on host"
+  };
+  std::optional<Other> find_other(bool that_collects) const;
+
+  std::filesystem::path file_;
+};
+
+}  // namespace ds
