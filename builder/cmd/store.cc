@@ -158,7 +158,7 @@ int run_stats(const Arguments& arguments, Disk& disk) {
                 {"named", kinds},
                 {"unnamed", to_json(unnamed)},
                 {"missing", use.missing},
-                {"damaged_records", use.faults.size()},
+                {"faults", use.faults.size()},
                 {"unreadable_records", use.unreadable},
                 {"strangers", use.strangers.size()},
                 {"elsewhere", elsewhere},
@@ -173,8 +173,7 @@ int run_stats(const Arguments& arguments, Disk& disk) {
   if (use.datasets.empty() && use.unknown.empty() && !use.files.empty())
     say(Stream::result,
         "  it knows no dataset: what builds of a part made with --database (--shard, --no-files) "
-        "is "
-        "named by the build of all images that follows\n");
+        "is named by the build of all images that follows\n");
   for (const fs::path& folder : use.unknown)
     say(Stream::result,
         "  {}: a dataset whose builds keep their database elsewhere (--database), or built before "
@@ -224,7 +223,7 @@ int run_gc(const Arguments& arguments, Disk& disk) {
                 {"unnamed", to_json(result.unnamed)},
                 {"forgotten", result.forgotten},
                 {"products", result.products},
-                {"damaged_records", use.faults.size()},
+                {"faults", use.faults.size()},
                 {"unreadable_records", use.unreadable},
                 {"strangers", use.strangers.size()},
                 {"dry_run", arguments.dry_run}});

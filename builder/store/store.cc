@@ -127,8 +127,7 @@ std::optional<std::string> Store::read_whole(Kind kind, Hash128 hash) {
     std::string outcome = mends_ ? " and is made again" : " (dsbuild build makes it again)";
     try {
       if (mends_) disk_.remove(file);
-    } catch (
-        const Error& error) {  // of somebody else, on a medium that is read only, a full folder
+    } catch (const Error& error) {  // of somebody else, on a read-only medium, a full folder
       outcome =
           fmt::format(", and stays{}: {}", found.is_file ? "" : " (move it away)", error.what());
     }

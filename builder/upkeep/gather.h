@@ -28,9 +28,8 @@ struct GatherResult {
 /// Takes what one store has, and another lacks, into the other: for each record the objects that
 /// it names, then the record, then the database's rows. Each file is hashed on the way, stands
 /// under its name only once it is whole and on the disk, and is not written where it is, whole: what
-/// the other has is read, and taken anew where it is damaged. So it may
-/// be killed at any moment and run again, and run beside others that do the same and beside builds
-/// of either store. Of a record with objects that are lost the others are taken; what is lost, a
+/// the other has is read, and taken anew where it is damaged. So it may be killed at any moment and
+/// run again, and run beside others that do the same and beside builds of either store. Of a record with objects that are lost the others are taken; what is lost, a
 /// build makes again. Throws Error(cancelled) where `stop` is set, and Error(io) where the other
 /// store's disk refuses.
 GatherResult gather(const Store& from, Store& to, const GatherRequest& request,

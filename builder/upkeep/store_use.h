@@ -44,9 +44,8 @@ struct StoreUse {
   /// Folders of datasets of this store that its database does not know.
   std::vector<std::filesystem::path> unknown;
   std::vector<StoreFileUse> files;
-  std::vector<std::string> faults;  ///< a line for each record that is damaged or no file
-  std::uint64_t unreadable =
-      0;  ///< records of another dsbuild's form: they and what they name stay
+  std::vector<std::string> faults;  ///< a line for each damaged record, and for what is no file
+  std::uint64_t unreadable = 0;     ///< records of another form: they and what they name stay
   std::vector<std::filesystem::path> strangers;    ///< files that are not the store's: left alone
   std::vector<std::filesystem::path> temporaries;  ///< of killed writers
   std::uint64_t temporary_bytes = 0;

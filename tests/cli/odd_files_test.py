@@ -149,7 +149,7 @@ class StoreTest(OddFilesTest):
             victim.parent.mkdir(exist_ok=True)
             victim.write_text("damaged")
         run = self.run_it("store", "stats", self.store, "--json")
-        self.assertEqual((run.code, run.json["damaged_records"], run.json["unreadable_records"]), (0, 3, 0), run)
+        self.assertEqual((run.code, run.json["faults"], run.json["unreadable_records"]), (0, 3, 0), run)
         self.assertIn(f"{records[0]}: is damaged (dsbuild store verify)", run.err)
         # gather says so, too, whoever looked before.
         run = self.run_it("store", "gather", self.store, self.folder / "to", "--json")
@@ -158,7 +158,7 @@ class StoreTest(OddFilesTest):
         dry = self.run_it("store", "gc", self.store, "--json", "-n").json
         run = self.run_it("store", "gc", self.store, "--json")
         self.assertEqual({**run.json, "dry_run": True}, dry)
-        self.assertEqual((run.json["records"]["files"], run.json["damaged_records"]), (3, 3), run)
+        self.assertEqual((run.json["records"]["files"], run.json["faults"]), (3, 3), run)
         self.assertFalse(any(victim.exists() for victim in records[:3]))
 
     def test_a_newer_dsbuilds_records_stay(self):
@@ -181,7 +181,7 @@ class StoreTest(OddFilesTest):
             self.enter("records", hashes[-1], newer.read_bytes())
         before = self.bytes_of_store()
         run = self.run_it("store", "stats", self.store, "--json")
-        self.assertEqual((run.json["damaged_records"], run.json["unreadable_records"]), (0, 1), run)
+        self.assertEqual((run.json["faults"], run.json["unreadable_records"]), (0, 1), run)
         run = self.run_it("store", "gc", self.store, "--json")
         self.assertEqual((run.code, run.json["unreadable_records"], run.json["objects"]["files"]), (0, 1, 0), run)
         self.assertIn("1 records of another dsbuild's form", run.err)
