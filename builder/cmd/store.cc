@@ -34,7 +34,7 @@ struct OpenStore {
 
 fs::path store_folder_of(const Arguments& arguments, Disk& disk) {
   std::error_code error;
-  const fs::path target = arguments.target;
+  fs::path target = arguments.target;
   if (fs::exists(target / "dsbuild.sqlite", error) || fs::is_directory(target / "objects", error))
     return target;
   const Dataset dataset = open_dataset({target, {}, {}, {}, false}, Access::records, disk);
