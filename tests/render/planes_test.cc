@@ -133,6 +133,31 @@ void expect_what_rays_in_double_meet(const Camera& camera) {
   EXPECT_GT(hidden, 10);
 }
 
+/// Of each object, as if it were alone, and whichever of them is the model.
+TEST(Planes, AloneMasksHoldWhatRaysInDoubleMeet) {
+  Scene scene = still_life();
+  scene.objects[0].id = 7;
+  const Camera camera = from_the_front();
+  Tracer tracer(pictures::tracer_options());
+  tracer.set_scene(scene);
+  const std::vector<std::uint32_t> ids{3000000000u, k_model_object_id, 7, 4711};
+  const std::vector<Plane> masks = tracer.trace_alone(camera, k_width, k_height, ids);
+  ASSERT_EQ(masks.size(), ids.size());
+  for (std::size_t which = 0; which < ids.size(); ++which) {
+    Scene alone = scene;
+    std::erase_if(alone.objects, [&](const Object& object) { return object.id != ids[which]; });
+    std::vector<Hit> hits(masks[which].values.size());
+    if (!alone.objects.empty()) hits = ray_caster::cast(alone, camera, k_width, k_height);
+    int covered = 0;
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      covered += hits[i].object >= 0 ? 1 : 0;
+      if (hits[i].object >= 0 && hits[i].margin < 1e-4) continue;
+      EXPECT_EQ(masks[which].values[i] > 0, hits[i].object >= 0) << ids[which] << ", pixel " << i;
+    }
+    EXPECT_EQ(covered > 20, ids[which] != 4711) << covered;
+  }
+}
+
 TEST(Planes, HoldWhatRaysInDoubleMeet) {
   for (std::size_t type = 0; type < camera_types().size(); ++type) {
     SCOPED_TRACE(camera_types()[type].name);

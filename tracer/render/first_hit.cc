@@ -12,9 +12,9 @@
 namespace ds {
 namespace {
 
-/// The model in a scene of nothing else, and of no texture or light. Without a triangle where there
-/// is no model.
-Scene model_alone(const Scene& scene) {
+/// The object of that id, as if it were the model, in a scene of nothing else, and of no texture or light.
+/// Without a triangle where there is none.
+Scene object_alone(const Scene& scene, std::uint32_t id) {
   Scene alone;
   Material& matte = alone.materials.emplace_back();
   const NodeType& type = material_types()[static_cast<std::size_t>(matte.type)];
@@ -23,8 +23,9 @@ Scene model_alone(const Scene& scene) {
   for (const NumberType& number : type.numbers)
     matte.numbers.push_back(number.default_value);
   for (const Object& object : scene.objects) {
-    if (object.id != k_model_object_id) continue;
+    if (object.id != id) continue;
     alone.objects.push_back(object);
+    alone.objects.back().id = k_model_object_id;
     alone.objects.back().material = 0;
     alone.objects.back().triangle_materials.clear();
   }
@@ -34,6 +35,13 @@ Scene model_alone(const Scene& scene) {
 bool has_triangles(const Scene& scene) {
   return std::any_of(scene.objects.begin(), scene.objects.end(),
                      [](const Object& object) { return !object.mesh.triangles.empty(); });
+}
+
+/// Of all zeros.
+Plane empty_plane(const PlaneType& type, int width, int height) {
+  return {&type, width, height,
+          std::vector<float>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                             static_cast<std::size_t>(type.width))};
 }
 
 bool read_materials(const std::vector<const PlaneType*>& types) {
@@ -122,7 +130,7 @@ std::vector<Plane> Tracer::trace_planes(const Camera& camera, int width, int hei
     traced = s.launch_planes(s.device_scene, s.scene(), camera, width, height, of_scene);
   }
   if (!of_model.empty()) {
-    const Scene alone = model_alone(s.scene());
+    const Scene alone = object_alone(s.scene(), k_model_object_id);
     if (has_triangles(alone)) {
       if (!s.device_model) {
         DeviceScene model;
@@ -132,10 +140,7 @@ std::vector<Plane> Tracer::trace_planes(const Camera& camera, int width, int hei
       of_alone = s.launch_planes(*s.device_model, alone, camera, width, height, of_model);
     } else {
       for (const PlaneType* type : of_model)
-        of_alone.push_back(
-            {type, width, height,
-             std::vector<float>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
-                                static_cast<std::size_t>(type->width))});
+        of_alone.push_back(empty_plane(*type, width, height));
     }
   }
   std::vector<Plane> planes;
@@ -144,6 +149,26 @@ std::vector<Plane> Tracer::trace_planes(const Camera& camera, int width, int hei
     planes.push_back(
         std::move((type->traits & kernels::k_plane_alone) != 0 ? *next_alone++ : *next++));
   return planes;
+}
+
+std::vector<Plane> Tracer::trace_alone(const Camera& camera, int width, int height,
+                                       const std::vector<std::uint32_t>& ids) {
+  State& s = *state_;
+  if (!s.ready) fail(ErrorKind::device, "no scene was set before tracing");
+  const PlaneType& type = plane_type("amodal_mask");
+  std::vector<Plane> masks;
+  for (const std::uint32_t id : ids) {
+    const Scene alone = object_alone(s.scene(), id);
+    if (!has_triangles(alone)) {
+      masks.push_back(empty_plane(type, width, height));
+      continue;
+    }
+    DeviceScene object;
+    object.take(s.device, s.maker.pack_surfaces(alone), s.uploads);
+    masks.push_back(
+        std::move(s.launch_planes(object, alone, camera, width, height, {&type}).front()));
+  }
+  return masks;
 }
 
 Geometry Tracer::trace_geometry(const Camera& camera, int width, int height) {

@@ -209,6 +209,10 @@ class Tracer {
   /// Of these types, which ask no light, in this order; each has the same bits whatever the others are.
   std::vector<Plane> trace_planes(const Camera& camera, int width, int height,
                                   const std::vector<const PlaneType*>& types);
+  /// The amodal mask of each of the scene's objects of these ids, as if it were alone: Plane::type is that
+  /// of the model's.
+  std::vector<Plane> trace_alone(const Camera& camera, int width, int height,
+                                 const std::vector<std::uint32_t>& ids);
   /// The planes mask and depth.
   Geometry trace_geometry(const Camera& camera, int width, int height);
   std::string device_name() const;

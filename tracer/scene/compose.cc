@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -59,11 +60,21 @@ std::vector<std::uint32_t> own_of_triangles(const Scene& material, const Mesh& m
 }  // namespace
 
 Scene compose(const Scene& environment, const Scene& material, Mesh mesh) {
+  Scene scene = environment;
+  add_object(scene, material, std::move(mesh), {});
+  return scene;
+}
+
+void add_object(Scene& scene, const Scene& material, Mesh mesh, ObjectName called) {
   DS_ASSERT(!material.materials.empty());
+  const bool taken = std::any_of(scene.objects.begin(), scene.objects.end(),
+                                 [&](const Object& object) { return object.id == called.id; });
+  if (taken)
+    fail(ErrorKind::asset, "{}: its object id {} is taken by another object of the scene",
+         called.name, called.id);
   const bool own = !material.own_materials.empty();
   if (own && materials_hash(mesh) != material.own_faces)
     fail(ErrorKind::asset, "the model's materials changed while the dataset was built");
-  Scene scene = environment;
   const Offsets offsets{static_cast<int>(scene.images.size()),
                         static_cast<int>(scene.textures.size()),
                         static_cast<int>(scene.materials.size())};
@@ -74,14 +85,13 @@ Scene compose(const Scene& environment, const Scene& material, Mesh mesh) {
     scene.materials.push_back(moved(part, offsets));
 
   Object model;
-  model.name = "model";
+  model.name = std::move(called.name);
   model.material = static_cast<int>(scene.materials.size()) - 1;
   if (own)
     model.triangle_materials = own_of_triangles(material, mesh, offsets.material, model.material);
   model.mesh = std::move(mesh);
-  model.id = k_model_object_id;
+  model.id = called.id;
   scene.objects.push_back(std::move(model));
-  return scene;
 }
 
 }  // namespace ds

@@ -40,6 +40,14 @@ Scene read_environment(const std::filesystem::path& folder,
 Scene compose(const Scene& environment, const Scene& material, Mesh mesh);
 inline constexpr std::uint32_t k_model_object_id = 1;
 
+/// What a scene calls a thing that is put into it.
+struct ObjectName {
+  std::uint32_t id = k_model_object_id;
+  std::string name = "model";
+};
+/// Puts one more thing into a scene, as `compose` does. The model comes last.
+void add_object(Scene& scene, const Scene& material, Mesh mesh, ObjectName called);
+
 /// Canonical texts for the render key: everything that can change a pixel, defaults filled in,
 /// floats exact, in an order that does not depend on the file's; images by content hash, meshes by
 /// geometry_hash, with the uvs and colours that their materials read. Names are those of the SDL ("materials.body.kd = 0x1p-1 0x1p-1 0x1p-1"). The tone
