@@ -29,40 +29,69 @@ json to_json_value(const FileRecord& file) {
           {"pixels_xxh128", file.pixels.hex()}};
 }
 
+template <typename Counts>
+json box_of(const Counts& left, const Counts& right, const Counts& above, const Counts& below,
+            const ImageRecord& image) {
+  return {left, above, static_cast<std::uint64_t>(image.width) - left - right,
+          static_cast<std::uint64_t>(image.height) - above - below};
+}
+
+/// Null where no pixel could show it.
+void add_visible(json& to, std::uint64_t seen_pixels, std::uint64_t amodal_pixels) {
+  const double of = static_cast<double>(amodal_pixels), seen = static_cast<double>(seen_pixels);
+  to["visible_fraction"] = of == 0 ? json() : json(seen / of);
+  to["occlusion"] = of == 0 ? json() : json((of - seen) / of);
+}
+
 /// What follows from the counts. Null where no pixel shows the model, or could.
 void add_counted(json& line, const ImageRecord& image) {
   const PixelCounts& counts = image.pixel_counts;
   if (counts.left && counts.right && counts.above && counts.below)
-    line["box"] =
-        *counts.model == 0
-            ? json()
-            : json({*counts.left, *counts.above,
-                    static_cast<std::uint64_t>(image.width) - *counts.left - *counts.right,
-                    static_cast<std::uint64_t>(image.height) - *counts.above - *counts.below});
+    line["box"] = *counts.model == 0
+                      ? json()
+                      : box_of(*counts.left, *counts.right, *counts.above, *counts.below, image);
   if (counts.beyond)
     line["truncation"] =
         counts.whole == 0U ? json()
         : *counts.beyond == 0
             ? json(0.0)
             : json(static_cast<double>(*counts.beyond) / static_cast<double>(*counts.whole));
-  if (!counts.model || !counts.amodal) return;
-  const double of = static_cast<double>(*counts.amodal), seen = static_cast<double>(*counts.model);
-  line["visible_fraction"] = of == 0 ? json() : json(seen / of);
-  line["occlusion"] = of == 0 ? json() : json((of - seen) / of);
+  if (counts.model && counts.amodal) add_visible(line, *counts.model, *counts.amodal);
 }
 
 json to_json_value(const Box& box) {
   return {{box.least.x, box.least.y, box.least.z}, {box.most.x, box.most.y, box.most.z}};
 }
 
-void add_pose(json& line, const ImageRecord& image) {
-  if (!image.pose) return;
-  const auto in_camera = model_to_camera(*image.pose, image.camera_to_world);
-  line["model_to_world"] = matrix(image.pose->model_to_world, 4);
-  line["model_box"] = to_json_value(image.pose->model_box);
-  line["box_m"] = to_json_value(world_box(*image.pose));
-  line["model_to_camera"] = {{"opencv", matrix(in_camera, 4)},
-                             {"opengl", matrix(to_opengl(in_camera), 4)}};
+void add_pose(json& to, const ModelPose& pose, const ImageRecord& image) {
+  const auto in_camera = model_to_camera(pose, image.camera_to_world);
+  to["model_to_world"] = matrix(pose.model_to_world, 4);
+  to["model_box"] = to_json_value(pose.model_box);
+  to["box_m"] = to_json_value(world_box(pose));
+  to["model_to_camera"] = {{"opencv", matrix(in_camera, 4)},
+                           {"opengl", matrix(to_opengl(in_camera), 4)}};
+}
+
+json to_json_value(const ObjectRecord& object, const ImageRecord& image) {
+  json value{{"id", object.id},
+             {"model", object.model},
+             {"class_path", object.class_path},
+             {"class_id", object.class_id ? json(*object.class_id) : json()},
+             {"material", object.material}};
+  add_pose(value, object.pose, image);
+  if (!object.pixels) return value;
+  const ObjectCounts& counts = *object.pixels;
+  value["pixels"] = to_json_value(counts);
+  value["box"] = counts.seen == 0
+                     ? json()
+                     : box_of(counts.left, counts.right, counts.above, counts.below, image);
+  add_visible(value, counts.seen, counts.amodal);
+  return value;
+}
+
+void add_objects(json& line, const ImageRecord& image) {
+  for (const ObjectRecord& object : image.objects)
+    line["objects"].push_back(to_json_value(object, image));
 }
 
 json to_json_value(const ImageRecord& image) {
@@ -109,7 +138,8 @@ json to_json_value(const ImageRecord& image) {
   if (image.draw_attempts) line["draw_attempts"] = *image.draw_attempts;
   if (!image.draws.empty()) line["draws"] = to_json_value(image.draws);
   add_counted(line, image);
-  add_pose(line, image);
+  if (image.pose) add_pose(line, *image.pose, image);
+  add_objects(line, image);
   return line;
 }
 
@@ -157,6 +187,9 @@ json to_json_value(const DatasetRecord& dataset) {
          "share of the pixels that would show the model alone on a picture without end which are "
          "outside this one; null where some of the model is not before the camera"},
         {"box", "[x, y, width, height] in whole pixels around the model in the mask"},
+        {"objects",
+         "things beside the model, which the plane object_id has as their id; box, "
+         "visible_fraction and poses of each as those of the model, which is 1"},
         {"model_box",
          "[least, most] of the model file's coordinates; box_m around its eight corners in the "
          "world"}}}};

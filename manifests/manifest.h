@@ -45,7 +45,7 @@ namespace ds {
 inline constexpr int k_manifest_format = 2;
 /// Counts up when lines or dataset.json gain a field, so that a build writes them anew. Readers need not
 /// know it.
-inline constexpr int k_manifest_fields = 4;
+inline constexpr int k_manifest_fields = 5;
 
 /// One file of a dataset.
 struct FileRecord {
@@ -53,6 +53,18 @@ struct FileRecord {
   std::string kind;  ///< "image", or a plane's name: "mask", "depth"
   FileHashes hashes;
   Hash128 pixels;  ///< of the decoded pixels: what two machines with different encoders agree on
+};
+
+/// A thing that an image shows beside its model: an element of "objects". It has "model_to_world", "model_box",
+/// "box_m" and "model_to_camera" as the line has them of its model.
+struct ObjectRecord {
+  std::uint32_t id = 0;  ///< in the plane object_id
+  std::string model, class_path, material;
+  std::optional<std::uint64_t> class_id{};  ///< as ImageRecord::class_id
+  ModelPose pose;
+  /// "pixels", and what follows from them as from the model's: "box", "visible_fraction", "occlusion". Not
+  /// there where the image has no plane.
+  std::optional<ObjectCounts> pixels{};
 };
 
 /// One image of a dataset: a line of manifest/images.jsonl.
@@ -93,7 +105,8 @@ struct ImageRecord {
   /// amodal mask is 0. With the mask's it has "box": [x, y, width, height] in pixels around what is seen of
   /// the model, from its first column and row; null where nothing is. "truncation" is beyond / whole of
   /// count_beyond, 0 where beyond is; null where both are 0.
-  PixelCounts pixel_counts{};
+  PixelCounts pixel_counts{};           ///< without those of `objects`, which have their own
+  std::vector<ObjectRecord> objects{};  ///< distractors, by id; not there where there are none
   Hash128 render_key, files_key;
   std::array<Hash128, 5> parts{};  ///< model, material, environment, camera, engine
 };

@@ -189,6 +189,36 @@ void read_pose(Fields& fields, const json& object, std::optional<ModelPose>& to)
   pose.model_box = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
 }
 
+/// Not there where an image shows its model alone.
+void read_objects(const json& owner, const SourcePlace& place, Diagnostics& diagnostics,
+                  std::vector<ObjectRecord>& to) {
+  const auto list = owner.find("objects");
+  if (list == owner.end()) return;
+  Fields fields(owner, place, diagnostics);
+  if (!list->is_array()) return fields.wrong("objects", "a list", *list);
+  for (const json& value : *list) {
+    if (!value.is_object()) return fields.wrong("objects", "objects", value);
+    ObjectRecord& object = to.emplace_back();
+    Fields members(value, place, diagnostics);
+    members.count("id", object.id);
+    members.text("model", object.model);
+    members.text("class_path", object.class_path);
+    if (const auto id = value.find("class_id"); id != value.end() && !id->is_null())
+      members.count("class_id", object.class_id.emplace());
+    members.text("material", object.material);
+    std::optional<ModelPose> pose;
+    if (members.find("model_to_world") != nullptr) read_pose(members, value, pose);
+    object.pose = pose.value_or(ModelPose{});
+    const auto pixels = value.find("pixels");
+    if (pixels == value.end()) continue;
+    try {
+      object.pixels = object_counts_from(*pixels, object.id);
+    } catch (const Error& error) {
+      diagnostics.add(place, "objects: {}", error.what());
+    }
+  }
+}
+
 void read_parts(const json& value, const SourcePlace& place, Diagnostics& diagnostics,
                 ImageRecord& image) {
   Fields parts(value, place, diagnostics);
@@ -242,6 +272,7 @@ ImageRecord image_from(const std::string& line, const SourcePlace& place,
   fields.number("lens_radius_m", image.lens_radius_m);
   fields.number("focus_distance_m", image.focus_distance_m);
   read_pose(fields, *object, image.pose);
+  read_objects(*object, place, diagnostics, image.objects);
   fields.number("tone_map_scale", image.tone_map_scale);
   fields.count("rejected_samples", image.rejected_samples);
   fields.optional_number("relative_error", image.relative_error);

@@ -82,6 +82,40 @@ json counts_schema() {
   return object_of(std::move(fields), json::array());
 }
 
+json pose_schema() {
+  return {
+      {"model_to_world", said(rows(4, 4), "the model file's coordinates to the world, with scale")},
+      {"model_to_camera",
+       object_of({{"opencv", rows(4, 4)}, {"opengl", rows(4, 4)}}, {"opencv", "opengl"})},
+      {"model_box", said(rows(2, 3), "least and greatest of the model file's coordinates")},
+      {"box_m", said(rows(2, 3), "around its corners in the world, metres")}};
+}
+
+json object_schema() {
+  json pixels = json::object(), names = json::array();
+  const json counts = to_json_value(ObjectCounts{});
+  for (const auto& [name, value] : counts.items()) {
+    pixels[name] = k_count;
+    names.push_back(name);
+  }
+  json fields{{"id", said(k_count, "in the plane object_id")},
+              {"model", k_text},
+              {"class_path", said(k_text, "vehicle/car; empty: none")},
+              {"class_id", said(or_null(k_count), "index of class_paths of dataset.json")},
+              {"material", k_text},
+              {"pixels", object_of(std::move(pixels), std::move(names))},
+              {"box", said(or_null(list_of(k_count, 4)), "x, y, width, height, pixels")},
+              {"visible_fraction", or_null(k_number)},
+              {"occlusion", or_null(k_number)}};
+  json required = json::array({"id", "model", "class_path", "class_id", "material"});
+  const json pose = pose_schema();
+  for (const auto& [name, field] : pose.items()) {
+    fields[name] = field;
+    required.push_back(name);
+  }
+  return object_of(std::move(fields), std::move(required));
+}
+
 json file_schema() {
   return object_of({{"path", said(k_text, "relative to the dataset's folder")},
                     {"kind", said(k_text, "image, or a plane's name")},
@@ -136,11 +170,7 @@ json image_schema() {
       {"camera_convention", {{"const", "opencv"}}},
       {"lens_radius_m", k_number},
       {"focus_distance_m", k_number},
-      {"model_to_world", said(rows(4, 4), "the model file's coordinates to the world, with scale")},
-      {"model_to_camera",
-       object_of({{"opencv", rows(4, 4)}, {"opengl", rows(4, 4)}}, {"opencv", "opengl"})},
-      {"model_box", said(rows(2, 3), "least and greatest of the model file's coordinates")},
-      {"box_m", said(rows(2, 3), "around its corners in the world, metres")},
+      {"objects", {{"type", "array"}, {"items", object_schema()}}},
       {"box", said(or_null(list_of(k_count, 4)), "x, y, width, height in the mask, pixels")},
       {"visible_fraction", or_null(k_number)},
       {"occlusion", or_null(k_number)},
@@ -159,9 +189,10 @@ json image_schema() {
                            {"camera", k_hash},
                            {"engine", k_hash}},
                           {"model", "material", "environment", "camera", "engine"})}};
+  fields.update(pose_schema());
   json required =
-      fields_of(fields, {"classes", "draw_attempts", "draws", "fold", "metres_per_pixel", "box",
-                         "visible_fraction", "occlusion", "truncation", "model_to_world",
+      fields_of(fields, {"objects", "classes", "draw_attempts", "draws", "fold", "metres_per_pixel",
+                         "box", "visible_fraction", "occlusion", "truncation", "model_to_world",
                          "model_to_camera", "model_box", "box_m"});
   return headed(object_of(std::move(fields), std::move(required)),
                 "A line of manifest/images.jsonl of a dataset of dsbuild");

@@ -6,8 +6,21 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace ds {
+
+/// What an image shows of a thing beside the model, in pixels.
+struct ObjectCounts {
+  std::uint32_t id = 0;      ///< in the plane object_id
+  std::uint64_t seen = 0;    ///< shows it
+  std::uint64_t amodal = 0;  ///< would if nothing else were there
+  std::uint64_t frame = 0;   ///< of `seen`, in the first or last row or column
+  /// As those of PixelCounts.
+  std::uint64_t left = 0, right = 0, above = 0, below = 0;
+
+  bool operator==(const ObjectCounts&) const = default;
+};
 
 /// What of an image's picture and mask tells that they are of no use, in pixels. Counts that nobody
 /// made are absent: of an image without a mask, or in the records of an older dsbuild.
@@ -22,6 +35,7 @@ struct PixelCounts {
   /// seen. They tell the box around it.
   std::optional<std::uint64_t> left{}, right{}, above{}, below{};
   std::optional<std::uint64_t> beyond{}, whole{};  ///< as count_beyond gives them
+  std::vector<ObjectCounts> objects{};             ///< by id; empty where nobody counted them, too
 
   bool operator==(const PixelCounts&) const = default;
 };
@@ -32,11 +46,18 @@ PixelCounts count_picture(std::span<const std::uint8_t> samples, int channels);
 PixelCounts count_mask(std::span<const std::uint8_t> samples, int width, int height);
 /// `amodal` of an amodal mask, likewise.
 PixelCounts count_amodal_mask(std::span<const std::uint8_t> samples, int width, int height);
+/// Of the samples of object_id, and of the amodal mask of that object.
+ObjectCounts count_object(std::uint32_t id, std::span<const float> ids,
+                          std::span<const float> amodal, int width, int height);
 /// Those of `to` that are absent, taken from the other.
 void add_counts(PixelCounts& to, const PixelCounts& from);
 
-/// An object of the counts that are there, by name.
+/// An object of the counts that are there, by name; "objects": a list.
 nlohmann::json to_json_value(const PixelCounts& counts);
+/// All but the id.
+nlohmann::json to_json_value(const ObjectCounts& counts);
+/// Throws Error(asset) with the field's name for what is no such object. The id is `id`.
+ObjectCounts object_counts_from(const nlohmann::json& object, std::uint32_t id);
 /// Throws Error(asset) with the field's name for what is no count.
 PixelCounts pixel_counts_from(const nlohmann::json& object);
 

@@ -50,6 +50,7 @@ constexpr ConcernText k_texts[] = {
      true},
     {"own_materials_partial", "models have materials of their own that are not shown whole", "",
      true},
+    {"distractors_unplaced", "images show fewer distractors than were drawn, for want of places"},
 };
 
 const ConcernText& text_of(const Concern& concern) {

@@ -26,17 +26,22 @@ std::string numbers_text(const std::vector<double>& numbers) {
   return fmt::format("[{:.4g}]", fmt::join(numbers, ", "));
 }
 
+bool draws_anything(const Recipe& recipe) {
+  return !recipe.drawn.empty() || !recipe.distractors.drawn.empty();
+}
+
 std::size_t longest_key(const Recipe& recipe) {
   std::size_t longest = 0;
-  for (const Drawn& drawn : recipe.drawn)
-    longest = std::max(longest, drawn.key.size());
+  for (const auto* drawn : {&recipe.drawn, &recipe.distractors.drawn})
+    for (const Drawn& one : *drawn)
+      longest = std::max(longest, one.key.size());
   return longest;
 }
 
 }  // namespace
 
 void print_draws(const Recipe& recipe, const Plan& plan, bool each_image) {
-  if (recipe.drawn.empty())
+  if (!draws_anything(recipe))
     say(Stream::result, "the recipe has no distribution: nothing is drawn\n");
   const std::vector<const ImageSpec*> images = images_of(plan);
   const std::size_t width = longest_key(recipe);
@@ -59,7 +64,7 @@ void print_draws(const Recipe& recipe, const Plan& plan, bool each_image) {
 nlohmann::json draws_json(const Recipe& recipe, const Plan& plan) {
   const std::vector<const ImageSpec*> images = images_of(plan);
   nlohmann::json each = nlohmann::json::object();
-  if (!recipe.drawn.empty())
+  if (draws_anything(recipe))
     for (const ImageSpec* image : images)
       each[image->id] = to_json_value(draws_of(*image, recipe));
   return {{"draws", to_json_value(summaries_of(recipe, images))}, {"image_draws", each}};

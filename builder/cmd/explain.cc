@@ -228,7 +228,7 @@ int run_explain(const Arguments& arguments) {
       object["parts"][k_part_names[i]] = image.keys.parts[i].hex();
     for (const auto& [part, change] : changes)
       object["changes"].push_back(to_json(part, change));
-    if (!dataset.recipe.drawn.empty())
+    if (!dataset.recipe.drawn.empty() || !dataset.recipe.distractors.drawn.empty())
       object["draws"] = to_json_value(draws_of(image.spec, dataset.recipe));
     if (arguments.effects)
       object["effects"] = to_json(image_effects(dataset.recipe, inputs, image.spec));

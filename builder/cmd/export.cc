@@ -31,26 +31,38 @@ std::vector<std::pair<std::string, std::string>> filters_of(const Arguments& arg
   return filters;
 }
 
+/// Files of models by name.
+using ModelFiles = std::map<std::string, std::filesystem::path>;
+
+FileMesh read_shown(const ModelFiles& files, const std::string& model, const ModelPose* pose) {
+  const auto at = files.find(model);
+  if (at == files.end()) fail(ErrorKind::asset, "{}: the recipe has no such model any more", model);
+  FileMesh mesh = read_model(at->second).mesh;
+  if (pose != nullptr && bounds_of(mesh) != pose->model_box)
+    fail(ErrorKind::asset,
+         "{}: is no longer the model of the pictures; dsbuild build makes them anew",
+         at->second.string());
+  return mesh;
+}
+
 /// Reads models where the recipe names them; nothing where it cannot be read.
-std::function<FileMesh(const ImageRecord&)> mesh_reader(const Arguments& arguments) {
-  std::map<std::string, std::filesystem::path> files;
+void add_mesh_readers(const Arguments& arguments, ExportRequest& request) {
+  ModelFiles models, distractors;
   try {
     RealDisk disk;
-    for (ModelFile& model : open_dataset(arguments.request(), Access::look, disk).recipe.models)
-      files.emplace(model.name, std::move(model.file));
+    const Recipe recipe = open_dataset(arguments.request(), Access::look, disk).recipe;
+    for (const ModelFile& model : recipe.models)
+      models.emplace(model.name, model.file);
+    for (const DistractorModel& model : recipe.distractors.models)
+      distractors.emplace(*model.name, *model.file);
   } catch (const Error&) {
-    return {};
+    return;
   }
-  return [files = std::move(files)](const ImageRecord& image) {
-    const auto at = files.find(image.model);
-    if (at == files.end())
-      fail(ErrorKind::asset, "{}: the recipe has no such model any more", image.model);
-    FileMesh mesh = read_model(at->second).mesh;
-    if (image.pose && bounds_of(mesh) != image.pose->model_box)
-      fail(ErrorKind::asset,
-           "{}: is no longer the model of the pictures; dsbuild build makes them anew",
-           at->second.string());
-    return mesh;
+  request.mesh = [models = std::move(models)](const ImageRecord& image) {
+    return read_shown(models, image.model, image.pose ? &*image.pose : nullptr);
+  };
+  request.object_mesh = [distractors = std::move(distractors)](const ObjectRecord& object) {
+    return read_shown(distractors, object.model, &object.pose);
   };
 }
 
@@ -73,9 +85,17 @@ ExportResult run(const ExportRequest& request) {
 
 int run_export(const Arguments& arguments) {
   const std::filesystem::path folder = dataset_folder(arguments.request());
-  ExportRequest request{folder,           arguments.export_folder, arguments.format,
-                        arguments.splits, filters_of(arguments),   arguments.hierarchy,
-                        arguments.copy,   mesh_reader(arguments),  {}};
+  ExportRequest request{folder,
+                        arguments.export_folder,
+                        arguments.format,
+                        arguments.splits,
+                        filters_of(arguments),
+                        arguments.hierarchy,
+                        arguments.copy,
+                        {},
+                        {},
+                        {}};
+  add_mesh_readers(arguments, request);
   const BehindRecipe behind = behind_recipe(arguments, "exported is what the manifest lists");
   if (behind.unmade > 0 && !arguments.partial)
     fail(ErrorKind::asset,

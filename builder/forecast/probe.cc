@@ -41,6 +41,9 @@ class SharedRenderer : public Renderer {
                                   const std::vector<const PlaneType*>& types) override {
     return renderer_.trace_planes(image, types);
   }
+  std::vector<Plane> trace_distractors(const ImageSpec& image) override {
+    return renderer_.trace_distractors(image);
+  }
   std::string device() const override { return renderer_.device(); }
 
  private:

@@ -293,7 +293,9 @@ Product ImageKeeper::plane_file(Ready& ready, const OutputFile& output,
     return keep_bytes(ready, std::move(product),
                       encode_output(dataset_.recipe.outputs, output, traced.light_planes),
                       traced.light_run);
-  product.pixel_counts = count_planes(traced.planes);
+  product.pixel_counts = count_planes(traced.planes, *output.plane);
+  // A plane of the model alone is that of images with others around it, too.
+  if (!is_of_model_alone(*output.plane)) product.pixel_counts.objects = traced.objects;
   return keep_bytes(ready, std::move(product),
                     encode_output(dataset_.recipe.outputs, output, traced.planes),
                     traced.planes_run);

@@ -126,6 +126,27 @@ void ImageMaker::trace_light(Work& work) {
   if (dataset_.recipe.keep_sums) traced.sums = std::move(sums);
 }
 
+/// All planes that ask no light, and what is seen of each distractor.
+void ImageMaker::trace_planes(Work& work) {
+  const ImageSpec& image = work.image.spec;
+  std::vector<const PlaneType*> types = planes_of(dataset_.recipe.outputs);
+  const PlaneType& ids = plane_type("object_id");
+  const bool shows_others = !image.distractors->empty();
+  const bool has_ids = std::find(types.begin(), types.end(), &ids) != types.end();
+  if (shows_others && !has_ids) types.push_back(&ids);
+  std::vector<Plane> planes = renderer().trace_planes(image, types);
+  if (shows_others) {
+    const auto seen = std::find_if(planes.begin(), planes.end(),
+                                   [&](const Plane& plane) { return plane.type == &ids; });
+    const std::vector<Plane> alone = renderer().trace_distractors(image);
+    for (std::size_t i = 0; i < alone.size(); ++i)
+      work.traced.objects.push_back(count_object((*image.distractors)[i].id(), seen->values,
+                                                 alone[i].values, seen->width, seen->height));
+    if (!has_ids) planes.erase(seen);
+  }
+  work.traced.planes = std::move(planes);
+}
+
 /// Whether a plane of light is to be traced.
 bool ImageMaker::lacks_light(const Work& work) {
   return std::any_of(work.image.files.begin(), work.image.files.end(),
@@ -167,7 +188,7 @@ void ImageMaker::obtain(Work& work, const OutputFile& output) {
     trace_light(work);
   } else if (traced.planes.empty()) {
     const Stopwatch watch;
-    traced.planes = renderer().trace_planes(work.image.spec, planes_of(dataset_.recipe.outputs));
+    trace_planes(work);
     traced.planes_run = {watch.seconds(), renderer().device()};
     traced.work.traced = true;
   }

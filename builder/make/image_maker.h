@@ -55,6 +55,7 @@ class ImageMaker {
   void obtain_film(Work& work);
   void trace_film(Work& work);
   void trace_light(Work& work);
+  void trace_planes(Work& work);
   bool lacks_light(const Work& work);
   FilmSums kept_film(const Work& work);
   SceneUse use_of(const PlannedImage& image) const;

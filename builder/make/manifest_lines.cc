@@ -96,6 +96,8 @@ bool Lines::is_labelled(const LineGlance& line, const ImageSpec& spec) const {
 bool Lines::still_holds(const LineGlance& line, const Wanted& wanted) const {
   const PlannedImage& image = *wanted.image;
   if (!work_.lines_hold || work_.is_new(image)) return false;
+  // What a line says of distractors is not seen at a glance.
+  if (!image.spec.distractors->empty()) return false;
   const ImageSpec& spec = image.spec;
   const ImageKeys& keys = image.keys;
   if (line.render_key != keys.render || line.files_key != keys.files || !is_labelled(line, spec) ||

@@ -41,9 +41,10 @@ std::vector<const PlaneType*> wanted_light_planes(const OutputSettings& outputs)
   return types;
 }
 
-PixelCounts count_planes(const std::vector<Plane>& planes) {
+PixelCounts count_planes(const std::vector<Plane>& planes, const PlaneType& of) {
   PixelCounts counts;
-  if (const Plane* mask = find(planes, plane_type("mask")))
+  const Plane* mask = find(planes, plane_type("mask"));
+  if (mask != nullptr && !is_of_model_alone(of))
     add_counts(counts, count_mask(covered(*mask), mask->width, mask->height));
   if (const Plane* alone = find(planes, plane_type("amodal_mask")))
     add_counts(counts, count_amodal_mask(covered(*alone), alone->width, alone->height));

@@ -17,8 +17,9 @@ namespace ds {
 std::vector<const PlaneType*> planes_of(const OutputSettings& outputs);
 /// And where any plane of light is: all of these.
 std::vector<const PlaneType*> wanted_light_planes(const OutputSettings& outputs);
-/// Of what planes_of traced.
-PixelCounts count_planes(const std::vector<Plane>& planes);
+/// Of what planes_of traced, what goes with the file of a plane: with one of the model alone only what such
+/// planes tell, since images in other surroundings share it.
+PixelCounts count_planes(const std::vector<Plane>& planes, const PlaneType& of);
 /// The file of one of them.
 std::vector<std::byte> encode_output(const OutputSettings& outputs, const OutputFile& output,
                                      const std::vector<Plane>& planes);

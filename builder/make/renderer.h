@@ -32,6 +32,8 @@ class Renderer {
   /// As Tracer::trace_planes.
   virtual std::vector<Plane> trace_planes(const ImageSpec& image,
                                           const std::vector<const PlaneType*>& types) = 0;
+  /// As Tracer::trace_alone, of the image's distractors, in their order.
+  virtual std::vector<Plane> trace_distractors(const ImageSpec& image) = 0;
   /// The image that will be asked for when this one is done, and what of it: what the host can do
   /// for it is done in the background while this one is traced. It must outlive the renderer. A guess
   /// that does not come true costs time only; an error is that image's, when it is asked for.

@@ -32,6 +32,8 @@ struct TracedImage {
   TraceRun film_run;
   std::vector<Plane> planes;  ///< planes_of the recipe, where any file is made of them
   TraceRun planes_run;
+  /// Of each of the image's distractors: of the plane object_id and of its amodal mask, likewise.
+  std::vector<ObjectCounts> objects;
   std::vector<Plane> light_planes;  ///< wanted_light_planes, likewise
   TraceRun light_run;
 };

@@ -3,6 +3,7 @@
 #include "builder/make/renderer.h"
 #include "builder/make/scene_ahead.h"
 #include "builder/plan/image_material.h"
+#include "builder/plan/image_parts.h"
 #include "builder/plan/image_scene.h"
 #include "builder/plan/keys.h"
 #include "tracer/base/error.h"
@@ -52,6 +53,13 @@ class TracerRenderer : public Renderer {
     load(image, materials ? SceneUse::pictures : SceneUse::planes);
     return tracer_.trace_planes(image.camera, image.engine.width, image.engine.height, types);
   }
+  std::vector<Plane> trace_distractors(const ImageSpec& image) override {
+    load(image, SceneUse::planes);
+    std::vector<std::uint32_t> ids;
+    for (const Distractor& one : *image.distractors)
+      ids.push_back(one.id());
+    return tracer_.trace_alone(image.camera, image.engine.width, image.engine.height, ids);
+  }
   void expect(const ImageSpec& image, SceneUse use) override { expected_ = Expected{&image, use}; }
   void announce(std::vector<const ImageSpec*> images) override {
     upcoming_.assign(images.begin(), images.end());
@@ -65,10 +73,20 @@ class TracerRenderer : public Renderer {
     SceneUse use;
   };
   std::string name_of(const ImageSpec& image) const {
-    return fmt::format(
-        "{}\n{}\n{}\n{}{}{}", image.model_file->native(), image.material_file->native(),
-        image.environment_folder->native(), canonical_change(change_of(image)),
-        canonical_model({}, {}, normalise_of(image, recipe_)), canonical_vary(image, recipe_));
+    return fmt::format("{}\n{}\n{}\n{}{}{}{}", image.model_file->native(),
+                       image.material_file->native(), image.environment_folder->native(),
+                       canonical_change(change_of(image)),
+                       canonical_model({}, {}, normalise_of(image, recipe_)),
+                       canonical_vary(image, recipe_), name_of_distractors(image));
+  }
+
+  std::string name_of_distractors(const ImageSpec& image) const {
+    std::string text;
+    for (const Distractor& one : *image.distractors)
+      text += fmt::format("{}\n{}\n{}\n{}", one.number, one.model.file->native(),
+                          one.material_file->native(),
+                          canonical_model({}, {}, normalise_of(one, recipe_)));
+    return text;
   }
 
   void load(const ImageSpec& image, SceneUse use) {
@@ -99,16 +117,9 @@ class TracerRenderer : public Renderer {
 
   /// What makes the scene, in whatever thread. Reads what `inputs_` must look up here.
   SceneSource source_of(const ImageSpec& image, SceneUse use) {
-    const Scene& environment = inputs_.environment(image.environment_folder);
-    return [this, use, engine = image.engine, &environment,
-            material = material_of(image, recipe_, inputs_), meshes = &inputs_.meshes(),
-            change = change_of(image),
-            source = inputs_.model_source(image.model_file, normalise_of(image, recipe_))] {
-      Mesh model = meshes->get(source);
-      Scene scene = change == EnvironmentChange{}
-                        ? compose(environment, material, std::move(model))
-                        : compose(changed(environment, change), material, std::move(model));
-      return tracer_.make_ready(std::move(scene), use, engine);
+    return [this, use, engine = image.engine, meshes = &inputs_.meshes(),
+            parts = parts_of(image, recipe_, inputs_)] {
+      return tracer_.make_ready(scene_of(parts, *meshes), use, engine);
     };
   }
 

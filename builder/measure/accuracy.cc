@@ -5,7 +5,7 @@
 #include "builder/measure/flip.h"
 #include "builder/measure/ladder.h"
 #include "builder/measure/ssim.h"
-#include "builder/plan/image_material.h"
+#include "builder/plan/image_parts.h"
 #include "builder/plan/image_scene.h"
 #include "builder/plan/keys.h"
 #include "tracer/base/error.h"
@@ -123,9 +123,7 @@ void fit(PairAccuracy& pair) {
 
 Subject subject_of(const ImageSpec& image, const Recipe& recipe, Inputs& inputs) {
   Subject subject;
-  subject.scene = compose(changed(inputs.environment(image.environment_folder), change_of(image)),
-                          material_of(image, recipe, inputs),
-                          inputs.model_mesh(image.model_file, normalise_of(image, recipe)));
+  subject.scene = scene_of(parts_of(image, recipe, inputs), inputs.meshes());
   load_images(subject.scene);
   subject.camera = image.camera;
   subject.engine = image.engine;

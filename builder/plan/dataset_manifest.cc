@@ -48,6 +48,19 @@ std::vector<double> numbers_of(const DrawnValue& value, const Drawn& drawn) {
           value.begin() + static_cast<std::ptrdiff_t>(width_of(drawn.distribution.kind))};
 }
 
+/// Until they are divided by the count, means are sums.
+void add_values(DrawSummary& summary, const std::vector<double>& values) {
+  if (summary.count++ == 0) {
+    summary.least = summary.most = summary.mean = values;
+    return;
+  }
+  for (std::size_t j = 0; j < values.size(); ++j) {
+    summary.least[j] = std::min(summary.least[j], values[j]);
+    summary.most[j] = std::max(summary.most[j], values[j]);
+    summary.mean[j] += values[j];
+  }
+}
+
 }  // namespace
 
 DrawRecords draws_of(const ImageSpec& image, const Recipe& recipe) {
@@ -57,11 +70,43 @@ DrawRecords draws_of(const ImageSpec& image, const Recipe& recipe) {
     draws[drawn.key] = {numbers_of(image.variables->draws[i], drawn),
                         drawn.distribution.kind == DrawnKind::integer};
   }
+  for (const Distractor& one : *image.distractors)
+    for (std::size_t i = 0; i < one.draws.size(); ++i) {
+      const Drawn& drawn = recipe.distractors.drawn[i];
+      draws[distractor_key(one.number, drawn.key.substr(drawn.key.find('.') + 1))] = {
+          numbers_of(one.draws[i], drawn), false};
+    }
   return draws;
 }
 
+namespace {
+
+/// `counts`: of its planes.
+std::vector<ObjectRecord> objects_of(const ImageSpec& image, const Recipe& recipe, const Plan& plan,
+                                     const PixelCounts& counts) {
+  std::vector<ObjectRecord> objects;
+  for (const Distractor& one : *image.distractors) {
+    ObjectRecord& object = objects.emplace_back();
+    object.id = one.id();
+    object.model = one.model.name;
+    object.class_path = one.model.class_path;
+    object.class_id = class_id_of(plan, object.class_path);
+    object.material = one.material_name;
+    const MeshExtent& extent = plan.extents.at(one.model.file->native());
+    object.pose = {model_to_world(extent, normalise_of(one, recipe), one.lowest).m, extent.box};
+    const auto pixels =
+        std::find_if(counts.objects.begin(), counts.objects.end(),
+                     [&](const ObjectCounts& each) { return each.id == object.id; });
+    if (pixels != counts.objects.end()) object.pixels = *pixels;
+  }
+  return objects;
+}
+
+}  // namespace
+
 std::optional<std::uint64_t> attempts_of(const ImageSpec& image, const Recipe& recipe) {
-  if (recipe.drawn.empty() || !recipe.keep.any()) return std::nullopt;
+  const bool draws = !recipe.drawn.empty() || !recipe.distractors.models.empty();
+  if (!draws || !recipe.keep.any()) return std::nullopt;
   return static_cast<std::uint64_t>(image.variables->attempts) + 1;
 }
 
@@ -70,19 +115,20 @@ DrawSummaries summaries_of(const Recipe& recipe, const std::vector<const ImageSp
   for (std::size_t i = 0; i < recipe.drawn.size(); ++i) {
     DrawSummary& summary = summaries[recipe.drawn[i].key];
     summary.distribution = recipe.drawn[i].text;
-    for (const ImageSpec* image : images) {
-      const std::vector<double> values = numbers_of(image->variables->draws[i], recipe.drawn[i]);
-      if (summary.count++ == 0) summary.least = summary.most = summary.mean = values;
-      if (summary.count == 1) continue;
-      for (std::size_t j = 0; j < values.size(); ++j) {
-        summary.least[j] = std::min(summary.least[j], values[j]);
-        summary.most[j] = std::max(summary.most[j], values[j]);
-        summary.mean[j] += values[j];
-      }
-    }
+    for (const ImageSpec* image : images)
+      add_values(summary, numbers_of(image->variables->draws[i], recipe.drawn[i]));
+  }
+  for (std::size_t i = 0; i < recipe.distractors.drawn.size(); ++i) {
+    const Drawn& drawn = recipe.distractors.drawn[i];
+    DrawSummary& summary = summaries[drawn.key];
+    summary.distribution = drawn.text;
+    for (const ImageSpec* image : images)
+      for (const Distractor& one : *image->distractors)
+        add_values(summary, numbers_of(one.draws[i], drawn));
+  }
+  for (auto& [key, summary] : summaries)
     for (double& mean : summary.mean)
       mean /= static_cast<double>(summary.count);
-  }
   return summaries;
 }
 
@@ -147,6 +193,8 @@ ImageRecord image_record(const PlannedImage& image, const Recipe& recipe, const 
       if (spec.engine.target) record.spp = mean_spp(product->facts, record);
     }
   }
+  record.objects = objects_of(spec, recipe, plan, record.pixel_counts);
+  record.pixel_counts.objects.clear();
   return record;
 }
 
@@ -160,10 +208,14 @@ DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
   record.recipe_text = canonical_recipe(recipe);
   record.dsbuild_version = program_version();
   record.seed = recipe.seed;
-  std::set<std::string_view> models;
+  std::set<std::string_view> models, shown;
   std::map<std::string_view, std::uint64_t> splits;
   for (const ImageFacts& image : images) {
     models.insert(image.model);
+    shown.insert(image.model);
+    if (image.spec != nullptr)
+      for (const Distractor& one : *image.spec->distractors)
+        shown.insert(*one.model.name);
     if (!image.split.empty()) ++splits[image.split];
   }
   record.class_paths.resize(plan.class_ids.size());
@@ -182,11 +234,11 @@ DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
                                PlaneRecord{std::string(name_of(plane.encoding)),
                                            header_comment("planes", plane.type->name)});
   for (const auto& [model, what] : plan.mended)
-    if (models.contains(model)) record.mended_models.emplace_back(model, what.damage);
+    if (shown.contains(model)) record.mended_models.emplace_back(model, what.damage);
   for (const auto& [model, shape] : plan.shapes)
     if (models.contains(model)) record.shapes.emplace(model, shape);
   for (const auto& [model, names] : plan.own_materials)
-    if (models.contains(model)) record.own_materials.emplace(model, names);
+    if (shown.contains(model)) record.own_materials.emplace(model, names);
   std::vector<std::pair<std::string, std::string>> texts;
   for (const auto& [kind, assets] : licensed_assets(recipe))
     for (auto& licence : licences_beside(kind, assets))

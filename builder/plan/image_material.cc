@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/image_material.h"
 
+#include "builder/plan/distractors.h"
 #include "builder/plan/image_scene.h"
 #include "tracer/base/canonical.h"
 #include "tracer/base/error.h"
@@ -91,6 +92,12 @@ Mesh stand_in(Scene& material) {
 
 }  // namespace
 
+/// What tells of the model's ids in the plane material_id: its own materials' are their numbers.
+std::string ids_of_model(const Scene& material) {
+  return material.own_materials.empty() ? fmt::format("{}", material.materials.back().id)
+                                        : "of faces " + material.own_faces.hex();
+}
+
 Hash128 program_name_of(const Scene& material) {
   DS_ASSERT(!material.own_materials.empty());
   Scene own = material;
@@ -100,15 +107,30 @@ Hash128 program_name_of(const Scene& material) {
                                effects.texture_stack, fmt::join(effects.textures, " ")));
 }
 
+Hash128 program_share_of(const Scene& material) {
+  Scene own = material;
+  Mesh model = stand_in(own);
+  const SceneEffects f = scene_effects(compose(Scene{}, own, std::move(model)), Camera{});
+  return hash_text(fmt::format("share {}\n{}\n{}\n{}\n{} {} {}", fmt::join(f.materials, " "),
+                               fmt::join(f.choosers, " "), fmt::join(f.textures, " "),
+                               fmt::join(f.lights, " "), f.material_inputs, f.texture_stack,
+                               f.chooser_depth));
+}
+
 Scene scene_without_model(const Recipe& recipe, Inputs& inputs, const ImageSpec& image) {
-  const Scene& environment = inputs.environment(image.environment_folder);
-  Scene material = material_of(image, recipe, inputs);
-  Mesh model = stand_in(material);
   EnvironmentChange gain = change_of(image);
   gain.turn_deg = 0;
-  return gain == EnvironmentChange{}
-             ? compose(environment, material, std::move(model))
-             : compose(changed(environment, gain), material, std::move(model));
+  const Scene& environment = inputs.environment(image.environment_folder);
+  Scene scene = gain == EnvironmentChange{} ? environment : changed(environment, gain);
+  for (const Distractor& one : *image.distractors) {
+    Scene material = material_of(one, inputs);
+    Mesh mesh = stand_in(material);
+    add_object(scene, material, std::move(mesh), {one.id(), distractor_name(one)});
+  }
+  Scene material = material_of(image, recipe, inputs);
+  Mesh model = stand_in(material);
+  add_object(scene, material, std::move(model), {});
+  return scene;
 }
 
 }  // namespace ds

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/image_scene.h"
 
+#include "builder/plan/distractors.h"
 #include "tracer/base/canonical.h"
 #include "tracer/base/error.h"
 
@@ -20,6 +21,7 @@ void ImageSettler::place(ImageSpec& image) {
     image.lowest = inputs_.model_lowest(image.model_file, options);
   if (recipe_.camera_fit)
     fit_image(image, recipe_, inputs_.model_sphere(image.model_file, options, image.lowest));
+  place_distractors(image, recipe_, inputs_);
 }
 
 namespace {

@@ -148,6 +148,22 @@ const Inputs::ModelFacts& Inputs::model(const std::filesystem::path& file) {
   });
 }
 
+std::shared_ptr<const FileMesh> ModelMeshes::file_mesh(const ModelSource& source) {
+  constexpr std::size_t k_most_bytes = std::size_t{128} << 20U;
+  const auto read = [&] {
+    FileMesh mesh = read_model(source.file).mesh;
+    if (mesh_hashes(mesh) != source.hashes)
+      fail(ErrorKind::asset, "{}: the model changed while the dataset was built",
+           source.file.string());
+    return KeptMesh{std::move(mesh)};
+  };
+  if (!source.shared) return std::make_shared<const FileMesh>(read().mesh);
+  if (!files_) files_.emplace(k_most_bytes);
+  const std::shared_ptr<const KeptMesh> kept =
+      files_->get(hash_text(source.file.native() + source.hashes.shape.hex()), read);
+  return {kept, &kept->mesh};
+}
+
 Mesh ModelMeshes::get(const ModelSource& source) {
   constexpr std::size_t k_most_kept_triangles = 2'000'000;
   const Hash128 part =
@@ -155,11 +171,7 @@ Mesh ModelMeshes::get(const ModelSource& source) {
   const std::lock_guard lock(mutex_);
   if (last_ && last_->file == source.file && last_->part == part) return last_->mesh;
   last_.reset();
-  const Model model = read_model(source.file);
-  if (mesh_hashes(model.mesh) != source.hashes)
-    fail(ErrorKind::asset, "{}: the model changed while the dataset was built",
-         source.file.string());
-  Mesh mesh = normalise(model.mesh, source.options);
+  Mesh mesh = normalise(*file_mesh(source), source.options);
   if (mesh.triangles.size() <= k_most_kept_triangles) last_ = Last{source.file, part, mesh};
   return mesh;
 }

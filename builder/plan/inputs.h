@@ -6,6 +6,7 @@
 #include "builder/recipe/camera_fit.h"
 #include "builder/recipe/recipe.h"
 #include "tracer/base/error.h"
+#include "tracer/base/kept.h"
 #include "tracer/scene/mesh.h"
 #include "tracer/scene/own_materials.h"
 #include "tracer/scene/scene.h"
@@ -13,6 +14,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -32,6 +34,7 @@ struct ModelSource {
   std::filesystem::path file;
   MeshHashes hashes;  ///< as `Inputs::model_hashes`
   NormaliseOptions options;
+  bool shared = false;  ///< images that do not follow each other show it, each in its own way
 };
 
 /// Models, read and normalised. The last one is kept: images of one model in several environments
@@ -48,8 +51,20 @@ class ModelMeshes {
     Hash128 part;  ///< of the model part
     Mesh mesh;
   };
+  /// As its file has it.
+  struct KeptMesh {
+    FileMesh mesh;
+    friend std::size_t bytes_held(const KeptMesh& kept) {
+      return kept.mesh.positions.size() *
+                 (sizeof(Vec3d) + sizeof(MeshColor) + sizeof(Vec3) + sizeof(Vec2)) +
+             kept.mesh.triangles.size() * sizeof(kept.mesh.triangles[0]) + sizeof kept;
+    }
+  };
+  std::shared_ptr<const FileMesh> file_mesh(const ModelSource& source);
+
   std::mutex mutex_;
   std::optional<Last> last_;
+  std::optional<Kept<KeptMesh>> files_;  ///< of those that are shared
 };
 
 /// The files a recipe names, each read once. What was hashed before is known by its stamp (size,
@@ -90,7 +105,7 @@ class Inputs {
   }
   /// For `meshes`, which other threads may ask.
   ModelSource model_source(const std::filesystem::path& file, const NormaliseOptions& options) {
-    return {file, model_hashes(file), options};
+    return {file, model_hashes(file), options, false};
   }
   ModelMeshes& meshes() { return meshes_; }
   /// Those that its file gives its faces; throws what read_own_materials throws. What is not used of them is

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/keys.h"
 
+#include "builder/plan/alike.h"
+#include "builder/plan/distractors.h"
 #include "builder/plan/image_material.h"
 #include "builder/plan/image_scene.h"
 #include "builder/plan/output_kinds.h"
@@ -93,38 +95,6 @@ Hash128 render_key(const PartHashes& parts) {
 
 namespace {
 
-// Every member, and so no fewer: a struct with one more does not compile.
-auto members(const Camera& camera) {
-  const auto& [type, position, target, up, fov_deg, extent_m, lens_radius_m, focus_distance_m] =
-      camera;
-  return std::tie(type, position, target, up, fov_deg, extent_m, lens_radius_m, focus_distance_m);
-}
-auto members(const ToneMap& map) {
-  const auto& [kind, scale, prescale, postscale, burn, gamma] = map;
-  return std::tie(kind, scale, prescale, postscale, burn, gamma);
-}
-bool same_target(const std::optional<ErrorTarget>& a, const std::optional<ErrorTarget>& b) {
-  if (!a || !b) return !a && !b;
-  const auto& [a_error, a_max_spp, a_tone_map, a_region] = *a;
-  const auto& [b_error, b_max_spp, b_tone_map, b_region] = *b;
-  return std::tie(a_error, a_max_spp, a_region) == std::tie(b_error, b_max_spp, b_region) &&
-         members(a_tone_map) == members(b_tone_map);
-}
-/// All but seed and target.
-auto members(const EngineSettings& engine) {
-  const auto& [width, height, spp, target, depth_total, depth_diffuse, depth_glossy, depth_specular,
-               roulette_depth, roulette_cap, filter_width, seed, outlier_limit, math] = engine;
-  return std::tie(width, height, spp, depth_total, depth_diffuse, depth_glossy, depth_specular,
-                  roulette_depth, roulette_cap, filter_width, outlier_limit, math);
-}
-
-bool same(const Camera& a, const Camera& b) {
-  return members(a) == members(b);
-}
-bool same_but_seed(const EngineSettings& a, const EngineSettings& b) {
-  return members(a) == members(b) && same_target(a.target, b.target);
-}
-
 /// What images from one camera in one environment share.
 struct View {
   Shared<std::string> name;  ///< keeps the address that is this entry's name
@@ -165,12 +135,6 @@ struct Kind {
   std::optional<TextForm> kept;
 };
 
-/// What tells of the model's ids in the plane material_id: its own materials' are their numbers.
-std::string ids_of_model(const Scene& material) {
-  return material.own_materials.empty() ? fmt::format("{}", material.materials.back().id)
-                                        : "of faces " + material.own_faces.hex();
-}
-
 /// Of an image's own material: of its texts.
 struct MaterialHashes {
   Hash128 part, colours;
@@ -183,10 +147,13 @@ bool is_gained(const ImageSpec& image, const Environment& environment) {
 
 /// All that the kinds of effects in an image depend on; `material` names what of its material does. What constants a
 /// material has is no part of them, so that images with other values of the same properties are of one kind.
-std::string kind_name(const ImageSpec& image, const Environment& environment, Hash128 material) {
-  return fmt::format("{} {} {}{}", material.hex(), environment.part.hex(),
+/// `others`: DistractorTexts::programs.
+std::string kind_name(const ImageSpec& image, const Environment& environment, Hash128 material,
+                      const std::string& others) {
+  return fmt::format("{} {} {}{}{}{}", material.hex(), environment.part.hex(),
                      image.camera.lens_radius_m > 0 ? "lens" : "pinhole",
-                     is_gained(image, environment) ? " gained" : "");
+                     is_gained(image, environment) ? " gained" : "", others.empty() ? "" : " with ",
+                     others);
 }
 
 }  // namespace
@@ -205,10 +172,16 @@ class KeyMaker::State {
   View& view_of(Environment& environment, const ImageSpec& image);
   Kind& kind_of(const ImageSpec& image, const Environment& environment);
   const std::string& program(const ImageSpec& image);
-  Hash128 program_hash(const ImageSpec& image, const Environment& environment, Hash128 material);
+  Hash128 program_hash(const ImageSpec& image, const std::string& kind);
   MaterialHashes material_of_image(const Kind& kind, const ImageSpec& image);
-  Hash128 traced_plane(std::size_t number, const PartHashes& parts, Hash128 colours, View& view,
-                       Kind& kind, const ImageSpec& image);
+  Hash128 view_part(const View& view, const ImageSpec& image);
+  Hash128 traced_plane(std::size_t number, const PartHashes& parts, Hash128 colours,
+                       const Environment& environment, View& view, Kind& kind,
+                       const ImageSpec& image);
+  std::string text_of_view(const ImageSpec& image) {
+    return canonical_camera(image.camera) + canonical_change(change_of(image)) +
+           distractors_.of_picture(image);
+  }
   void add_outputs(ImageKeys& keys, Hash128 colours, Environment& environment, View& view,
                    Kind& kind, const ImageSpec& image);
 
@@ -221,7 +194,8 @@ class KeyMaker::State {
   NormaliseOptions options_;             ///< and how it is placed
   std::array<std::optional<Hash128>, 8> model_parts_;  ///< by what of the model is read
   std::unordered_map<const void*, Environment> environments_;
-  std::map<std::tuple<const void*, const void*, bool, bool>, Kind> kinds_;
+  std::map<std::tuple<const void*, const void*, bool, bool, std::string>, Kind> kinds_;
+  DistractorTexts distractors_;
   std::deque<std::pair<SceneEffects, std::string>> programs_;
   TextForm five_, film_sums_, files_;
 };
@@ -231,6 +205,7 @@ KeyMaker::State::State(const Recipe& recipe, Inputs& inputs, TextSet& texts)
       inputs_(inputs),
       texts_(texts),
       output_kinds_(kinds_of(recipe.outputs)),
+      distractors_(recipe, inputs),
       five_(form_of_parts({})) {
   CanonicalText head;
   head.add("kind", "film_sums");
@@ -296,9 +271,15 @@ View& KeyMaker::State::view_of(Environment& environment, const ImageSpec& image)
   return view;
 }
 
+/// What views of an image have in common, and what is its own.
+Hash128 KeyMaker::State::view_part(const View& view, const ImageSpec& image) {
+  return image.distractors->empty() ? view.part : hash_text(texts_.fold(text_of_view(image)));
+}
+
 /// Of what a plane is made from, for an image; `parts`: of its picture.
 Hash128 KeyMaker::State::traced_plane(std::size_t number, const PartHashes& parts, Hash128 colours,
-                                      View& view, Kind& kind, const ImageSpec& image) {
+                                      const Environment& environment, View& view, Kind& kind,
+                                      const ImageSpec& image) {
   const WantedPlane& plane = planes_[number];
   if (is_of_light(*plane.type)) {
     const Hash128 engine =
@@ -306,7 +287,11 @@ Hash128 KeyMaker::State::traced_plane(std::size_t number, const PartHashes& part
     return five_.hash({HexText(parts[0]).text(), HexText(parts[1]).text(), HexText(parts[2]).text(),
                        HexText(parts[3]).text(), HexText(engine).text()});
   }
-  TextForm& form = view.planes[number];
+  TextForm own;
+  const bool alone = (plane.type->traits & kernels::k_plane_alone) != 0;
+  if (!image.distractors->empty() && !alone)
+    own = plane_form(plane, environment.shapes, image, distractors_.of_plane(image, *plane.type));
+  TextForm& form = image.distractors->empty() || alone ? view.planes[number] : own;
   if (reads_materials(*plane.type)) {
     MeshExtras reads = kind.reads;
     reads.normals = plane.reads.normals;
@@ -329,9 +314,8 @@ const std::string& KeyMaker::State::program(const ImageSpec& image) {
 
 /// Hash of the program's value in a canonical text, under which that is kept. It depends on the
 /// material, the environment and the lens, and on dsbuild itself.
-Hash128 KeyMaker::State::program_hash(const ImageSpec& image, const Environment& environment,
-                                      Hash128 material) {
-  const std::string question = "program " + kind_name(image, environment, material);
+Hash128 KeyMaker::State::program_hash(const ImageSpec& image, const std::string& kind) {
+  const std::string question = "program " + kind;
   if (const auto known = inputs_.find_known(question))
     if (const auto hash = Hash128::from_hex(*known)) return *hash;
   CanonicalText text;
@@ -346,8 +330,9 @@ Hash128 KeyMaker::State::program_hash(const ImageSpec& image, const Environment&
 
 Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& environment) {
   const bool lens = image.camera.lens_radius_m > 0;
+  const std::string others = distractors_.programs(image);
   Kind& kind = kinds_[{image.material_file.identity(), image.environment_folder.identity(), lens,
-                       is_gained(image, environment)}];
+                       is_gained(image, environment), others}];
   if (kind.made && same_but_seed(kind.settings, image.engine)) return kind;
   EngineSettings settings = image.engine;
   settings.seed = 0;
@@ -365,14 +350,14 @@ Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& enviro
   kind.files_part = texts_.add(kind.files);
   const bool own = shows_own(image);
   const Hash128 program_name = own ? program_name_of(material) : kind.material_part;
-  kind.program = program_hash(image, environment, program_name);
+  const std::string of = kind_name(image, environment, program_name, others);
+  kind.program = program_hash(image, of);
   kind.engine =
       TextForm(canonical_engine(settings, TextSet::k_reference + kind.program.hex()), {"seed"});
   kind.kept.reset();
   kind.colours = hash_text(canonical_colours(material));
   kind.plane_programs.clear();
   kind.plane_engines.clear();
-  const std::string of = kind_name(image, environment, program_name);
   for (const WantedPlane& plane : planes_) {
     const bool light = is_of_light(*plane.type);
     Hash128 program;
@@ -412,7 +397,8 @@ void KeyMaker::State::add_outputs(ImageKeys& keys, Hash128 colours, Environment&
                 ? environment.picture.hash({render.text()})
                 : hash_text(std::string(environment.picture.fill({render.text()})) + effects);
     } else {
-      const Hash128 traced = traced_plane(next, keys.parts, colours, view, kind, image);
+      const Hash128 traced =
+          traced_plane(next, keys.parts, colours, environment, view, kind, image);
       key = planes_[next++].output.hash({HexText(traced).text()});
     }
     texts.emplace_back(key);
@@ -433,7 +419,7 @@ ImageKeys KeyMaker::State::keys(const ImageSpec& image) {
   keys.parts = {model_part(image, kind.reads),
                 material.part,
                 environment.part,
-                view.part,
+                view_part(view, image),
                 kind.engine.hash({view_of_digits(fmt::format_int(image.engine.seed))}),
                 kind.files_part};
   const auto& parts = keys.parts;
@@ -463,7 +449,7 @@ void KeyMaker::State::add_texts(const ImageSpec& image) {
   Kind& kind = kind_of(image, environment_of(image));
   texts_.add(canonical_model(inputs_.model_hashes(image.model_file), kind.reads,
                              normalise_of(image, recipe_)));
-  texts_.add(canonical_camera(image.camera) + canonical_change(change_of(image)));
+  texts_.add(text_of_view(image));
   if (const std::string effects = canonical_effects(effects_of(image)); !effects.empty())
     texts_.add(kind.files + effects);
   if (!recipe_.vary.empty()) texts_.add(canonical_material(material_of(image, recipe_, inputs_)));

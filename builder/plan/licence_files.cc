@@ -75,6 +75,9 @@ std::vector<std::pair<std::string, NamedAssets>> licensed_assets(const Recipe& r
   NamedAssets models;
   for (const ModelFile& model : recipe.models)
     models.emplace_back(model.name, model.file);
+  if (!recipe.distractors.of_recipe)
+    for (const DistractorModel& model : recipe.distractors.models)
+      models.emplace_back(model.name, model.file);
   return {{"models", std::move(models)},
           {"materials", named(recipe.materials)},
           {k_environments.data(), named(recipe.environments)}};

@@ -65,6 +65,9 @@ Hash128 hash_of_labels(DatasetRecord record, const Plan& plan) {
     for (const auto& [hierarchy, path] : *image.spec.other_classes)
       add_word(hash, path);
     if (image.spec.fold) add_word(hash, std::to_string(*image.spec.fold));
+    for (const Distractor& one : *image.spec.distractors)
+      for (const auto* word : {&one.model.name, &one.model.class_path, &one.material_name})
+        add_word(hash, **word);
   }
   return hash.hash();
 }
@@ -224,7 +227,7 @@ void compare_concerns(std::vector<Concern> before, std::vector<Concern> after,
   for (const char* name :
        {"models_absent", "models_unlisted", "classes_unshared", "assets_unphysical",
         "assets_unlikely", "sizes_unlikely", "names_by_case", "meshes_damaged", "models_unlikely",
-        "own_materials_partial"}) {
+        "own_materials_partial", "distractors_unplaced"}) {
     const std::uint64_t old_count = concern(before, name).count;
     const std::uint64_t new_count = concern(after, name).count;
     if (old_count != new_count)
@@ -389,10 +392,13 @@ ManifestState manifest_state(const Dataset& dataset, const Plan& plan, const Pla
   if (!any_stale && all_known) state.listing = sources.listing;
   if (placed.find(k_checksums_file)->product != sources.program)
     state.older_program = older_program(dataset.folder);
-  if (placed.find(k_dataset_file)->product != sources.labels)
+  if (placed.find(k_dataset_file)->product != sources.labels) {
     state.behind = differences(dataset, plan, any_stale);
-  else if (state.listing && placed.find(k_images_file)->product != sources.listing)
+    // What lines say of distractors is not seen at a glance.
+    if (state.behind.empty() && !any_stale) state.behind.emplace_back("labels of objects");
+  } else if (state.listing && placed.find(k_images_file)->product != sources.listing) {
     state.behind.push_back("the list of images");
+  }
   return state;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/plan.h"
 
+#include "builder/plan/distractors.h"
 #include "builder/plan/hash_index.h"
 #include "builder/plan/image_material.h"
 #include "builder/plan/image_scene.h"
@@ -9,6 +10,7 @@
 #include "builder/plan/manifest_state.h"
 #include "builder/plan/own_notes.h"
 #include "builder/plan/placed_files.h"
+#include "builder/plan/plan_concerns.h"
 #include "builder/plan/unlikely_properties.h"
 #include "builder/plan/unlikely_sizes.h"
 #include "tracer/base/log.h"
@@ -17,7 +19,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <functional>
 #include <set>
 
 namespace ds {
@@ -246,83 +247,36 @@ void check_ids(const Recipe& recipe, Inputs& inputs, const ImageSpec& spec) {
     check(plane, spec.material_file, "scene.materials.NAME.id",
           largest_material_id(inputs.material(spec)));
   }
+  const std::uint32_t most = inputs.environment_facts(spec.environment_folder).largest_object_id;
+  if (!recipe.distractors.models.empty() && most >= k_first_distractor_id)
+    fail(ErrorKind::asset,
+         "{}: scene.objects.NAME.id must be below {} where there are distractors, whose ids follow "
+         "from there, got {}",
+         spec.environment_folder->string(), k_first_distractor_id, most);
 }
 
-/// Models and environments of images that can be made, whose damage is said where they are read.
-Concern count_damaged(const std::vector<PlannedImage>& images, Inputs& inputs) {
-  Concern concern{"meshes_damaged", 0, 0, {}};
-  std::set<const void*> seen;  // an environment's path is held in several places
-  std::set<std::string> environments;
-  Shared<fs::path> model;  // of the image before: a model's images follow each other
-  for (const PlannedImage& image : images) {
-    if (image.error) continue;
-    const ImageSpec& spec = image.spec;
-    if (!model.is_same(spec.model_file)) {
-      model = spec.model_file;
-      ++concern.of;
-      if (loses_faces(inputs.model_damage(spec.model_file))) add_example(concern, spec.model_name);
+/// What must hold of distractors, which are known once the image is settled.
+void check_distractors(const Recipe& recipe, Inputs& inputs, const ImageSpec& spec) {
+  for (const Distractor& one : *spec.distractors) {
+    check_normals(recipe, inputs, one.model.file);
+    for (const PlaneOutput& plane : recipe.outputs.planes) {
+      if ((plane.type->traits & kernels::k_plane_material_ids) == 0) continue;
+      const std::uint32_t most = largest_id(plane.encoding),
+                          id = largest_material_id(material_of(one, inputs));
+      if (id > most)
+        fail(ErrorKind::asset, "{}: its materials' ids must be at most {} for the plane {}, got {}",
+             one.material_file->string(), most, plane.type->name, id);
     }
-    const Shared<fs::path>& folder = spec.environment_folder;
-    if (!seen.insert(folder.identity()).second || !environments.insert(folder->native()).second)
-      continue;
-    ++concern.of;
-    if (inputs.environment_facts(folder).lost_faces) add_example(concern, spec.environment_name);
   }
-  return concern;
 }
 
-/// Counts the files of which these are true; what was found was said when they were read.
-Concern count_assets(const char* name, const std::vector<PlannedImage>& images, Inputs& inputs,
-                     const std::function<bool(const Scene& material)>& of_material,
-                     bool EnvironmentFacts::*of_environment) {
-  Concern concern{name, 0, 0, {}};
-  std::set<const void*> seen;  // the files' paths are long, and images many
-  std::set<std::string> files;
-  const auto look = [&](const Shared<fs::path>& asset, const auto& is_true) {
-    if (!seen.insert(asset.identity()).second || !files.insert(asset->native()).second) return;
-    ++concern.of;
-    if (is_true()) add_example(concern, asset->filename().string());
-  };
-  for (const PlannedImage& image : images) {
-    if (image.error) continue;
-    const ImageSpec& spec = image.spec;
-    look(spec.material_file, [&] { return of_material(inputs.material(spec)); });
-    look(spec.environment_folder,
-         [&] { return inputs.environment_facts(spec.environment_folder).*of_environment; });
-  }
-  return concern;
-}
-
-bool is_unphysical(const Scene& material) {
-  return std::any_of(material.materials.begin(), material.materials.end(),
-                     [](const Material& part) { return !part.unphysical.empty(); });
-}
-
-/// A to z only: which other letters are one depends on the file system.
-std::string in_lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return text;
-}
-
-/// Counts the images whose files another's would replace where case does not count.
-Concern count_names_by_case(const std::vector<PlannedImage>& images) {
-  std::vector<std::pair<Hash128, std::size_t>> names;
-  names.reserve(images.size());
-  for (std::size_t i = 0; i < images.size(); ++i)
-    names.emplace_back(hash_text(in_lower_case(images[i].spec.id)), i);
-  std::sort(names.begin(), names.end());
-  std::vector<std::size_t> concerned;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if ((i > 0 && names[i - 1].first == names[i].first) ||
-        (i + 1 < names.size() && names[i + 1].first == names[i].first))
-      concerned.push_back(names[i].second);
-  std::sort(concerned.begin(), concerned.end());
-  Concern concern{"names_by_case", 0, images.size(), {}};
-  for (const std::size_t i : concerned)
-    add_example(concern, images[i].spec.id);
-  return concern;
+/// Puts what the manifest says of a model's file into the plan.
+void note_model(Plan& plan, Inputs& inputs, const std::string& name, const fs::path& file,
+                bool shows_own) {
+  const MendedDamage& damage = inputs.model_damage(file);
+  if (!damage.empty()) plan.mended.try_emplace(name, MendedModel{file, damage});
+  plan.extents.try_emplace(file.native(), inputs.model_extent(file));
+  if (shows_own) plan.own_materials.try_emplace(name, names_of(inputs.own_materials(file)));
 }
 
 std::set<std::string> classes_of(const std::vector<PlannedImage>& images) {
@@ -332,6 +286,8 @@ std::set<std::string> classes_of(const std::vector<PlannedImage>& images) {
     const Shared<std::string>& path = image.spec.class_path;
     if (before == nullptr || !before->is_same(path)) paths.insert(*path);
     before = &path;
+    for (const Distractor& one : *image.spec.distractors)
+      paths.insert(*one.model.class_path);
   }
   return paths;
 }
@@ -352,6 +308,7 @@ namespace {
 /// share either.
 std::pair<std::string, PropertyChange> of_its_part(const char* part, PropertyChange change) {
   constexpr std::string_view k_of_environment = "environments.";
+  if (change.name.starts_with("distractors[")) return {"distractors", std::move(change)};
   if (!change.name.starts_with(k_of_environment)) return {part, std::move(change)};
   change.name.erase(0, k_of_environment.size());
   return {"environment", std::move(change)};
@@ -390,25 +347,23 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard, Wanted
       check_normals(dataset.recipe, inputs, image.spec.model_file);
       check_ids(dataset.recipe, inputs, image.spec);
       settler.settle(image.spec);
+      check_distractors(dataset.recipe, inputs, image.spec);
       if (image.spec.engine.target)
         image.spec.engine.target->tone_map =
             tone_map_of(dataset.recipe, inputs.environment_facts(image.spec.environment_folder));
       image.keys = keys.keys(image.spec);
       check_names(image.keys.outputs);
       if (!model.is_same(image.spec.model_file)) {
-        const MendedDamage& damage = inputs.model_damage(image.spec.model_file);
-        if (!damage.empty())
-          plan.mended.try_emplace(image.spec.model_name,
-                                  MendedModel{image.spec.model_file, damage});
-        plan.extents.try_emplace(image.spec.model_file->native(),
-                                 inputs.model_extent(image.spec.model_file));
+        note_model(plan, inputs, image.spec.model_name, image.spec.model_file,
+                   shows_own(image.spec));
         if (const std::string& shape = inputs.model_shape(image.spec.model_file); !shape.empty())
           plan.shapes.try_emplace(image.spec.model_name, shape);
-        if (shows_own(image.spec))
-          plan.own_materials.try_emplace(image.spec.model_name,
-                                         names_of(inputs.own_materials(image.spec.model_file)));
         model = image.spec.model_file;
       }
+      for (const Distractor& one : *image.spec.distractors)
+        if (!plan.extents.contains(one.model.file->native()))
+          note_model(plan, inputs, one.model.name, one.model.file,
+                     one.material_file.is_same(one.model.file));
       planner.plan(image, known);
     } catch (const DamagedDatabase&) {
       throw;
@@ -431,17 +386,14 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard, Wanted
     plan.forgets = planner.forgets();
   }
   std::vector<std::string> unlikely;
-  plan.concerns = {
-      count_assets("assets_unphysical", plan.images, inputs, is_unphysical,
-                   &EnvironmentFacts::unphysical),
-      count_assets(
-          "assets_unlikely", plan.images, inputs,
-          [](const Scene& material) { return material.unlikely; }, &EnvironmentFacts::unlikely),
-      find_unlikely_sizes(dataset.recipe, plan.images, inputs, unlikely),
-      count_names_by_case(plan.images),
-      count_damaged(plan.images, inputs),
-      find_unlikely_properties(dataset.recipe, plan.images, inputs, unlikely),
-      find_own_notes(plan.images, inputs, unlikely)};
+  plan.concerns = {count_unphysical(plan.images, inputs),
+                   count_unlikely_assets(plan.images, inputs),
+                   find_unlikely_sizes(dataset.recipe, plan.images, inputs, unlikely),
+                   count_names_by_case(plan.images),
+                   count_damaged(plan.images, inputs),
+                   find_unlikely_properties(dataset.recipe, plan.images, inputs, unlikely),
+                   find_own_notes(plan.images, inputs, unlikely),
+                   count_unplaced(dataset.recipe, plan.images)};
   for (const std::string& line : unlikely)
     warn(line);
   snapshot.reset();

@@ -102,7 +102,7 @@ struct Plan {
   /// Names of the materials in a model's file by model name, of those that are shown in them.
   std::map<std::string, std::vector<std::string>> own_materials;
   /// Those of all shards' images that are known before any is made: assets_unphysical,
-  /// sizes_unlikely, names_by_case, meshes_damaged, models_unlikely, own_materials_partial. Findings, but for names_by_case,
+  /// sizes_unlikely, names_by_case, meshes_damaged, models_unlikely, own_materials_partial, distractors_unplaced. Findings, but for names_by_case,
   /// were warned of when they were found.
   std::vector<Concern> concerns;
   DrawCounts drawn;  ///< of all shards' images

@@ -54,7 +54,7 @@ WantedPlane wanted_plane(const OutputKind& kind) {
 
 /// Of a plane of the model alone the environment is no part.
 TextForm plane_form(const WantedPlane& plane, const std::map<unsigned, std::string>& shapes,
-                    const ImageSpec& image) {
+                    const ImageSpec& image, const std::string& others) {
   const bool alone = (plane.type->traits & kernels::k_plane_alone) != 0;
   const bool colours = reads_materials(*plane.type);
   CanonicalText text;
@@ -75,7 +75,7 @@ TextForm plane_form(const WantedPlane& plane, const std::map<unsigned, std::stri
   text.add(fmt::format("camera.{}", type.span_name()), span_of(image.camera));
   text.add("width", image.engine.width);
   text.add("height", image.engine.height);
-  return {text.text() + turn, parts};
+  return {text.text() + turn + others, parts};
 }
 
 Hash128 plane_program(const PlaneType& plane, const std::string& of, const Recipe& recipe,

@@ -29,9 +29,9 @@ TextForm output_form(std::string_view kind, std::string_view format,
 /// Canonical text of what a plane that asks no light is traced from, but for what differs between models and materials:
 /// the plane's program, the hash of the model, and of canonical_colours of its material, where it
 /// reads materials; else the hash of the model and the material's id.
-/// `shapes`: EnvironmentFacts::shapes.
+/// `shapes`: EnvironmentFacts::shapes. `others`: canonical, of what else is seen.
 TextForm plane_form(const WantedPlane& plane, const std::map<unsigned, std::string>& shapes,
-                    const ImageSpec& image);
+                    const ImageSpec& image, const std::string& others = "");
 
 /// Hash of the tokens of the program that traces this plane alone in the image's scene, of which the
 /// question `of` says all that the program depends on.

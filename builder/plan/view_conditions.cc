@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/view_conditions.h"
 
+#include "builder/plan/distractors.h"
 #include "builder/plan/image_scene.h"
 #include "builder/plan/keys.h"
 #include "manifests/camera_geometry.h"
@@ -21,8 +22,9 @@
 namespace ds {
 namespace {
 
-constexpr int k_rays = 64;          // along each side of the picture
-constexpr int k_most_pixels = 128;  // of the longer side, to tell what is in the frame
+constexpr int k_rays = 64;                // along each side of the picture
+constexpr std::size_t k_most_trees = 64;  // of distractors' models
+constexpr int k_most_pixels = 128;        // of the longer side, to tell what is in the frame
 
 std::vector<std::array<Vec3, 3>> triangles_of(const Mesh& mesh) {
   std::vector<std::array<Vec3, 3>> triangles;
@@ -102,9 +104,10 @@ Rejection ViewConditions::reject(const ImageSpec& image) {
   text.add("environment", inputs_.environment_facts(image.environment_folder).shapes.at(0));
   const std::string question =
       "keep " +
-      hash_text(
-          text.text() + canonical_turn(change_of(image)) + canonical_camera(image.camera) +
-          canonical_model(inputs_.model_hashes(image.model_file), {}, normalise_of(image, recipe_)))
+      hash_text(text.text() + canonical_turn(change_of(image)) + canonical_camera(image.camera) +
+                canonical_model(inputs_.model_hashes(image.model_file), {},
+                                normalise_of(image, recipe_)) +
+                DistractorTexts(recipe_, inputs_).of_plane(image, plane_type("mask")))
           .hex();
   if (const auto known = inputs_.find_known(question))
     if (const auto rejection = rejection_from(*known)) return *rejection;
@@ -125,16 +128,40 @@ const RayTree& ViewConditions::around(const ImageSpec& image) {
   return at->second = RayTree(std::move(triangles));
 }
 
+ViewConditions::PlacedModel ViewConditions::placed(const std::filesystem::path& file,
+                                                   NormaliseOptions options) {
+  options.turn = NormaliseOptions{}.turn;
+  options.place_m = {};
+  return {file, options, RayTree(triangles_of(inputs_.model_mesh(file, options))),
+          model_to_world(inputs_.model_extent(file), options)};
+}
+
 const ViewConditions::PlacedModel& ViewConditions::model_of(const ImageSpec& image) {
   NormaliseOptions still = normalise_of(image, recipe_);
   still.turn = NormaliseOptions{}.turn;
   still.place_m = {};
   if (model_ && model_->file == *image.model_file && model_->options == still) return *model_;
   model_.reset();
-  model_ = std::make_unique<PlacedModel>(PlacedModel{
-      image.model_file, still, RayTree(triangles_of(inputs_.model_mesh(image.model_file, still))),
-      model_to_world(inputs_.model_extent(image.model_file), still)});
+  model_ = std::make_unique<PlacedModel>(placed(image.model_file, still));
   return *model_;
+}
+
+/// In one size for all images, each then by a matrix of its own.
+std::vector<ViewConditions::Hider> ViewConditions::hiders_of(const ImageSpec& image) {
+  std::vector<Hider> hiders;
+  if (others_.size() > k_most_trees) others_.clear();
+  for (const Distractor& one : *image.distractors) {
+    const NormaliseOptions options = normalise_of(one, recipe_);
+    auto at = others_.find(one.model.file->native());
+    if (at == others_.end()) {
+      NormaliseOptions unit = options;
+      unit.size_m = 1;
+      at = others_.emplace(one.model.file->native(), placed(one.model.file, unit)).first;
+    }
+    const Mat4 to_world = model_to_world(inputs_.model_extent(one.model.file), options, one.lowest);
+    hiders.push_back({one.model.file->native(), at->second.to_world * portable::inverse(to_world)});
+  }
+  return hiders;
 }
 
 double ViewConditions::in_frame(const ImageSpec& image) {
@@ -181,6 +208,14 @@ Rejection ViewConditions::look(const ImageSpec& image) {
   constexpr double k_far = std::numeric_limits<double>::max();
   // A thing that stands on another touches it.
   constexpr double k_before = 1 - 1e-6;
+  const std::vector<Hider> hiders = hiders_of(image);
+  const auto hidden = [&](const Ray& ray, double before) {
+    return std::any_of(hiders.begin(), hiders.end(), [&](const Hider& hider) {
+      const Ray at_hider = moved(ray, hider.to_tree);
+      return others_.at(hider.file).tree.nearest(at_hider.origin, at_hider.direction, before) <
+             before;
+    });
+  };
   std::uint64_t whole = 0, seen = 0;
   for (int y = 0; y < k_rays; ++y)
     for (int x = 0; x < k_rays; ++x) {
@@ -191,7 +226,8 @@ Rejection ViewConditions::look(const ImageSpec& image) {
       if (t == k_far) continue;
       ++whole;
       const double before = t * k_before;
-      if (environment.nearest(at_environment.origin, at_environment.direction, before) == before)
+      if (environment.nearest(at_environment.origin, at_environment.direction, before) == before &&
+          !hidden(ray, before))
         ++seen;
     }
   const double share = whole == 0 ? 0 : static_cast<double>(seen) / static_cast<double>(whole);

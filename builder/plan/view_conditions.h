@@ -25,7 +25,8 @@ struct Rejection {
 ///
 /// in_frame: 1 less what count_beyond finds outside of a picture of 128 pixels; 0 where some of the model is
 /// beside or behind the camera. visible: of the rays through the middles of 64 x 64 fields of the picture
-/// that meet the model alone, those before which nothing of the environment lies that cameras see; 0 where
+/// that meet the model alone, those before which nothing of the environment lies that cameras see, and no
+/// distractor; 0 where
 /// none meets it. clearance_m: from the camera to the nearest of either. inside: the camera is where three
 /// rays leave the model by an odd number of surfaces.
 ///
@@ -43,6 +44,13 @@ class ViewConditions {
     RayTree tree;
     Mat4 to_world;  ///< of the file's coordinates
   };
+  /// What may stand before the model.
+  struct Hider {
+    std::string file;  ///< of others_
+    Mat4 to_tree;      ///< from the world
+  };
+  PlacedModel placed(const std::filesystem::path& file, NormaliseOptions options);
+  std::vector<Hider> hiders_of(const ImageSpec& image);
   Rejection look(const ImageSpec& image);
   const RayTree& around(const ImageSpec& image);
   const PlacedModel& model_of(const ImageSpec& image);
@@ -51,7 +59,8 @@ class ViewConditions {
   const Recipe& recipe_;
   Inputs& inputs_;
   std::map<std::filesystem::path, RayTree> environments_;
-  std::unique_ptr<PlacedModel> model_;  ///< the last: a model's images follow each other
+  std::map<std::string, PlacedModel> others_;  ///< distractors' models, by file
+  std::unique_ptr<PlacedModel> model_;         ///< the last: a model's images follow each other
 };
 
 }  // namespace ds

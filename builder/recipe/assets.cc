@@ -31,6 +31,7 @@ struct AssetKind {
   bool (*is_one)(const fs::path&);    ///< whether a path named in `files` can be one
   bool (*belongs)(const fs::path&);   ///< whether an entry of `dir` is one
   std::string (*name)(const fs::path&);
+  bool of_meshes = false;
 };
 
 bool is_file(const fs::path& path) {
@@ -57,7 +58,11 @@ std::string file_name(const fs::path& path) {
 }
 
 constexpr AssetKind k_models{"models", "a file", [] { return mesh_endings_text() + " file"; },
-                             is_file,  is_model, file_name};
+                             is_file,  is_model, file_name,
+                             true};
+constexpr AssetKind k_distractors{
+    "distractors", "a file", [] { return mesh_endings_text() + " file"; }, is_file, is_model,
+    file_name,     true};
 constexpr AssetKind k_materials{"materials", "a file",    [] { return std::string(".mat file"); },
                                 is_file,     is_material, material_name};
 constexpr AssetKind k_environments{
@@ -155,7 +160,7 @@ class FolderWalk {
     if (kind_.section == "environments" && is_odd_environment(folder)) ++listing_.specials;
     if (recursive_)
       walk(folder, error);
-    else if (kind_.section == "models" && holds_one(folder))
+    else if (kind_.of_meshes && holds_one(folder))
       ++listing_.unread_folders;
   }
 
@@ -187,7 +192,7 @@ bool is_of_materials(const std::string& ending) {
 /// What of a folder is not used, in words; empty: nothing worth a word.
 std::string unused_text(const Listing& listing, const AssetKind& kind) {
   std::vector<std::string> parts;
-  if (!listing.others.empty() && kind.section == "models") {
+  if (!listing.others.empty() && kind.of_meshes) {
     std::size_t count = 0;
     std::vector<std::string> endings;
     for (const auto& [ending, files] : listing.others) {
@@ -251,6 +256,11 @@ class Finder {
     }
     return std::move(found_);
   }
+  /// Of a kind that has no `files`.
+  std::map<std::string, ModelFile> find_in_folder() {
+    add_folder(*settings_.find(dir_key_));
+    return std::move(found_);
+  }
 
  private:
   /// One of the two keys stays; the one that --set gives replaces the recipe's other.
@@ -285,9 +295,9 @@ class Finder {
   void add_folder(const RecipeValue& dir) {
     const fs::path folder = settings_.resolve(dir);
     std::error_code error;
-    const bool recursive = kind_.section == "models" && settings_.boolean("models.recursive");
+    const bool recursive = kind_.of_meshes && settings_.boolean("models.recursive");
     Listing listing = FolderWalk(kind_, recursive).list(folder, error);
-    if (kind_.section == "models" && settings_.text("materials.assign") == k_own_materials)
+    if (kind_.of_meshes && settings_.text("materials.assign") == k_own_materials)
       std::erase_if(listing.others, [](const auto& files) { return is_of_materials(files.first); });
     const std::string unused = unused_text(listing, kind_);
     if (error) {
@@ -306,9 +316,7 @@ class Finder {
       add(dir, dir_key_, path, path.lexically_relative(folder).generic_string());
   }
 
-  bool named_by_path() const {
-    return kind_.section == "models" && settings_.text("models.names") == "path";
-  }
+  bool named_by_path() const { return kind_.of_meshes && settings_.text("models.names") == "path"; }
 
   void add(const RecipeValue& giver, const std::string& key, const fs::path& path,
            const std::string& below) {
@@ -327,7 +335,7 @@ class Finder {
                          fmt::format("must give each name once, got {} at {} and {}{}", name,
                                      std::min(other->second.file, path).string(),
                                      std::max(other->second.file, path).string(),
-                                     kind_.section == "models" && !named_by_path()
+                                     kind_.of_meshes && !named_by_path()
                                          ? "; models.names = \"path\" tells them apart"
                                          : ""));
     }
@@ -344,6 +352,12 @@ class Finder {
 std::vector<ModelFile> find_models(Settings& settings) {
   std::vector<ModelFile> models;
   for (const auto& [name, model] : Finder(k_models, settings).find())
+    models.push_back(model);
+  return models;
+}
+std::vector<ModelFile> find_distractors(Settings& settings) {
+  std::vector<ModelFile> models;
+  for (const auto& [name, model] : Finder(k_distractors, settings).find_in_folder())
     models.push_back(model);
   return models;
 }

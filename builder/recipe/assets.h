@@ -17,6 +17,8 @@ namespace ds {
 /// finding: neither or both keys given, nothing found, no such file, one name twice, a name that a
 /// manifest cannot hold (control characters, a backslash, not UTF-8).
 std::vector<ModelFile> find_models(Settings& settings);
+/// Those of distractors.dir, which must be a folder, likewise.
+std::vector<ModelFile> find_distractors(Settings& settings);
 /// Material files: materials.files, or the .mat files of materials.dir; none of models' own.
 std::vector<std::filesystem::path> find_materials(Settings& settings);
 /// Environment folders: environments.files, or the folders of environments.dir that hold an

@@ -36,6 +36,9 @@ std::optional<std::string> own_text(const KeySpec& key, const Recipe& recipe) {
   if (key.name == "models.files") return list_of_names(recipe.models);
   if (key.name == "materials.files" && recipe.assign_materials != Assign::own)
     return list_of_names(recipe.materials);
+  if (key.name == "distractors.dir" && !recipe.distractors.models.empty())
+    return to_toml(recipe.distractors.of_recipe ? std::string(k_recipe_models)
+                                                : recipe.distractors.folder);
   if (key.name == "environments.files") return list_of_names(recipe.environments);
   if (key.name == "classes.train" && recipe.train_classes)
     return to_toml(recipe.train_classes->filename().string());

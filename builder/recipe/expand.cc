@@ -186,7 +186,8 @@ void fit_image(ImageSpec& image, const Recipe& recipe, const Sphere& model) {
 }
 
 bool draws_views(const Recipe& recipe) {
-  return std::any_of(recipe.drawn.begin(), recipe.drawn.end(),
+  return !recipe.distractors.models.empty() ||
+         std::any_of(recipe.drawn.begin(), recipe.drawn.end(),
                      [](const Drawn& one) { return one.distribution.per == DrawnPer::view; });
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/recipe/keys.h"
 
+#include "builder/recipe/distractors.h"
 #include "manifests/check/check.h"
 #include "tracer/base/nearest.h"
 #include "tracer/scene/type_tables.h"
@@ -33,6 +34,7 @@ constexpr std::string_view k_ring_sets =
 constexpr std::string_view k_spiral_sets = R"(camera.set = "orbit" | "hemisphere")";
 constexpr std::string_view k_counted_sets = R"(camera.set = "orbit" | "hemisphere" | "random")";
 constexpr std::string_view k_chosen_materials = R"(materials.assign != "own")";
+constexpr std::string_view k_with_distractors = "distractors.dir != false";
 constexpr std::string_view k_reinhard = R"(outputs.tone_map = "reinhard02")";
 
 using enum KeyType;
@@ -180,6 +182,39 @@ constexpr std::array k_own_keys = {
     KeySpec{"materials.vary", film, patterns, "", "{}", k_any, "", k_chosen_materials,
             "What is drawn of the material an image shows: by NAME.PROPERTY of its file, a "
             "distribution or a constant; see Distributions"},
+
+    KeySpec{
+        "distractors.dir", scene, path, "", "false", k_any, R"(false | "{models}")", "",
+        "Shows further models beside an image's own: those of this folder, found as models.dir's "
+        "are, or \"{models}\": the recipe's own, of the image's split and fold alone. false: "
+        "none. See Distractors"},
+    KeySpec{"distractors.count", scene, integer, "", "1", between(0, k_most_distractors), "",
+            k_with_distractors, "How many; one that finds no place is left out, and counted"},
+    KeySpec{
+        "distractors.place_m", scene, point, "m", "", k_coordinate, "", k_with_distractors,
+        "Where each is moved to, as models.place_m: a distribution, which must be given. A place "
+        "is drawn again where the distractor would touch something"},
+    KeySpec{"distractors.size_m", scene, number, "m", "0.1", between(0, k_far_m), "",
+            k_with_distractors, "Their longest side, as models.size_m; drawn for each"},
+    KeySpec{"distractors.turn",
+            scene,
+            quaternion,
+            "",
+            "\"none\"",
+            {-1, 1},
+            "\"none\"",
+            k_with_distractors,
+            "Turns each, as models.turn"},
+    KeySpec{"distractors.gap_m", scene, number, "m", "0.005", between(0, k_far_m), "",
+            k_with_distractors,
+            "Least distance between upright cylinders around the boxes of two models, and of the "
+            "camera from a distractor's"},
+    KeySpec{"distractors.tries", scene, integer, "", "64", between(1, 10000), "",
+            k_with_distractors, "Most draws of a distractor's place"},
+    KeySpec{"distractors.class", manifest, text, "", "\"\"", k_any, "",
+            R"(distractors.dir != false | "{models}")",
+            "Class path of distractors that are not the recipe's own models; \"\": none, and then "
+            "exports do not list them"},
 
     KeySpec{"environments.dir", images, path, "", "", k_any, "", "",
             "Folder of environments: the folders in it that hold an environment.scn. Either this "
@@ -443,13 +478,6 @@ const std::vector<KeySpec>& all_keys() {
 
 }  // namespace
 
-KeyCondition condition_of(const KeySpec& key) {
-  const std::string_view text = key.only_with;
-  const std::size_t space = text.find(' ');
-  const std::size_t literals = text.find("= ") + 2;
-  return {text.substr(0, space), text.substr(literals), text[space + 1] != '!'};
-}
-
 std::span<const KeySpec> recipe_keys() {
   return all_keys();
 }
@@ -459,24 +487,6 @@ const KeySpec* find_key(std::string_view name) {
   const auto at =
       std::find_if(keys.begin(), keys.end(), [&](const KeySpec& key) { return key.name == name; });
   return at == keys.end() ? nullptr : &*at;
-}
-
-bool is_choice(std::string_view choices, std::string_view literal) {
-  while (!choices.empty()) {
-    const std::size_t end = choices.find(" | ");
-    if (choices.substr(0, end) == literal) return true;
-    choices.remove_prefix(end == choices.npos ? choices.size() : end + 3);
-  }
-  return false;
-}
-
-std::vector<std::string_view> recipe_sections() {
-  std::vector<std::string_view> sections;
-  for (const KeySpec& key : all_keys()) {
-    const std::string_view own = key.name.substr(0, key.name.find('.'));
-    if (sections.empty() || sections.back() != own) sections.push_back(own);
-  }
-  return sections;
 }
 
 }  // namespace ds

@@ -5,6 +5,7 @@
 #include "builder/recipe/camera_sets.h"
 #include "builder/recipe/canonical_recipe.h"
 #include "builder/recipe/classes.h"
+#include "builder/recipe/distractors.h"
 #include "builder/recipe/planes.h"
 #include "builder/recipe/settings.h"
 #include "builder/recipe/splits.h"
@@ -190,6 +191,7 @@ Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrid
   recipe.constants = constants_of(settings);
   recipe.normalise.size_m = recipe.constants.model_size_m;
   recipe.drawn = drawn_of(settings);
+  recipe.distractors.drawn = take_draws_of_each(recipe.drawn);
   read_vary(settings, recipe);
   CameraViews views = make_cameras(settings, recipe.constants);
   recipe.camera_set = std::move(views.set);
@@ -199,6 +201,7 @@ Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrid
   recipe.keep = {settings.number("camera.keep.in_frame"), settings.number("camera.keep.visible"),
                  settings.number("camera.keep.clearance_m"), settings.integer("camera.keep.tries")};
   read_split(settings, recipe);
+  read_distractors(settings, recipe);
   recipe.engine = read_engine(settings);
   recipe.outputs = read_outputs(settings);
   recipe.rejected_limit = settings.number("engine.rejected_limit");

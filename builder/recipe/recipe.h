@@ -3,6 +3,7 @@
 
 #include "builder/recipe/camera_fit.h"
 #include "builder/recipe/camera_sets.h"
+#include "builder/recipe/distractors.h"
 #include "builder/recipe/shared.h"
 #include "builder/recipe/variables.h"
 #include "manifests/classification.h"
@@ -140,6 +141,7 @@ struct Recipe {
   std::vector<Camera> cameras;
   CameraSet camera_set;
   KeepSettings keep;
+  DistractorSettings distractors;
   Variables constants;       ///< of what is not drawn
   std::vector<Drawn> drawn;  ///< by key
   std::vector<VaryPattern> vary;
@@ -184,6 +186,8 @@ struct ImageSpec {
   Shared<std::string> view;
   Camera camera;
   Shared<ImageVariables> variables;
+  Shared<std::vector<Distractor>> distractors;  ///< those that found a place; where settled
+  int unplaced = 0;                             ///< how many found none
   double lowest = 0;                  ///< of its model, as lowest_of has it; known where settled
   EngineSettings engine;              ///< with this image's own seed, below 2^53
   Shared<std::string> class_path;     ///< "vehicle/car", "" where unclassified

@@ -21,6 +21,11 @@ struct Variables {
   double model_size_m = 0;
   std::array<double, 4> model_turn{1, 0, 0, 0};
   std::array<double, 3> model_place_m{};
+  double distractor_count = 0;
+  // Of one distractor:
+  double distractor_size_m = 0;
+  std::array<double, 4> distractor_turn{1, 0, 0, 0};
+  std::array<double, 3> distractor_place_m{};
   double distance_m = 1;  ///< 1 with camera.distance_m = "fit"
   double elevation_deg = 0, azimuth_deg = 0, roll_deg = 0;
   double span = 0;  ///< camera.fov_deg or camera.extent_m

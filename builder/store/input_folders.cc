@@ -31,6 +31,10 @@ std::map<fs::path, const char*> input_folders(const Recipe& recipe) {
   for (const ModelFile& model : recipe.models)
     models.push_back(model.file);
   add(models, "models");
+  std::vector<fs::path> distractors;
+  for (const DistractorModel& model : recipe.distractors.models)
+    distractors.push_back(model.file);
+  add(distractors, "distractors");
   add(recipe.materials, "materials");
   for (const fs::path& folder : recipe.environments)
     found.try_emplace(folder, "an environment");
@@ -67,6 +71,8 @@ void check_no_input_file(const fs::path& file, std::string_view option, const Re
   if (!fs::exists(file, error)) return;
   std::vector<fs::path> inputs{recipe.file};
   for (const ModelFile& model : recipe.models)
+    inputs.push_back(model.file);
+  for (const DistractorModel& model : recipe.distractors.models)
     inputs.push_back(model.file);
   inputs.insert(inputs.end(), recipe.materials.begin(), recipe.materials.end());
   inputs.insert(inputs.end(), recipe.class_files.begin(), recipe.class_files.end());

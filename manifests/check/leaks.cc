@@ -101,6 +101,28 @@ void check_meshes(const CheckInput& input, CheckReport& report) {
              }));
 }
 
+/// A model is the same where its name and its file's box are.
+void check_distractor_models(const CheckInput& input, CheckReport& report) {
+  std::map<std::string_view, const ImageRecord*> models;
+  for (const ImageRecord& image : input.images)
+    models.emplace(image.model, &image);
+  const auto of_another = [&](const ImageRecord& image, const ObjectRecord& object) {
+    const auto at = models.find(object.model);
+    return at != models.end() && at->second->split != image.split && at->second->pose &&
+           at->second->pose->model_box == object.pose.model_box;
+  };
+  std::uint64_t with_objects = 0;
+  std::vector<std::string> leaking;
+  for (const ImageRecord& image : input.images) {
+    with_objects += image.objects.empty() ? 0U : 1U;
+    if (std::any_of(image.objects.begin(), image.objects.end(),
+                    [&](const ObjectRecord& object) { return of_another(image, object); }))
+      leaking.push_back(image.id);
+  }
+  report.add(CheckLevel::error, "images show a model of another split as a distractor", leaking,
+             with_objects, "distractors.dir = \"{models}\" takes those of an image's own split");
+}
+
 void check_leaks(const CheckInput& input, CheckReport& report) {
   std::set<std::string> all_splits;
   for (const ImageRecord& image : input.images)
@@ -114,6 +136,7 @@ void check_leaks(const CheckInput& input, CheckReport& report) {
   const std::string by = input.setting("classes.split.by");
   if (by.empty() || by == "\"model\"") {
     check_meshes(input, report);
+    check_distractor_models(input, report);
     check_shapes(input, report);
   } else {
     check_shared(input, report, "models", &ImageRecord::model);

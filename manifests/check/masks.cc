@@ -27,6 +27,19 @@ std::optional<double> visible_of(const ImageRecord& image) {
   return static_cast<double>(*counts.model) / static_cast<double>(*counts.amodal);
 }
 
+void check_hidden_distractors(const CheckInput& input, CheckReport& report) {
+  std::vector<std::string> hidden;
+  std::uint64_t counted = 0;
+  for (const ImageRecord& image : input.images)
+    for (const ObjectRecord& object : image.objects) {
+      if (!object.pixels) continue;
+      ++counted;
+      if (object.pixels->seen == 0) hidden.push_back(image.id);
+    }
+  report.add(CheckLevel::note, "distractors are out of their picture or wholly hidden", hidden,
+             counted);
+}
+
 void check_masks(const CheckInput& input, CheckReport& report) {
   const auto masks =
       ids_where(input.images, [](const ImageRecord& i) { return share_of(i).has_value(); });
@@ -59,6 +72,7 @@ void check_masks(const CheckInput& input, CheckReport& report) {
              ids_where(input.images,
                        [&](const ImageRecord& i) { return visible_of(i).value_or(1) < visible; }),
              masks.size());
+  check_hidden_distractors(input, report);
 }
 
 }  // namespace

@@ -24,10 +24,14 @@ std::vector<std::string> names_in(const CheckInput& input, const char* key) {
 }
 
 void check_list(const CheckInput& input, CheckReport& report, CheckLevel level, const char* key,
-                Field field, const char* what) {
+                Field field, const char* what, std::string ObjectRecord::*of_object = nullptr) {
   std::set<std::string> used;
-  for (const ImageRecord& image : input.images)
+  for (const ImageRecord& image : input.images) {
     used.insert(image.*field);
+    if (of_object == nullptr) continue;
+    for (const ObjectRecord& object : image.objects)
+      used.insert(object.*of_object);
+  }
   const std::vector<std::string> names = names_in(input, key);
   std::vector<std::string> unused;
   for (const std::string& name : names)
@@ -40,7 +44,7 @@ void check_unused(const CheckInput& input, CheckReport& report) {
   check_list(input, report, CheckLevel::warning, "models.files", &ImageRecord::model,
              "models of the recipe are in no image");
   check_list(input, report, CheckLevel::note, "materials.files", &ImageRecord::material,
-             "materials of the recipe are in no image");
+             "materials of the recipe are in no image", &ObjectRecord::material);
   check_list(input, report, CheckLevel::note, "environments.files", &ImageRecord::environment,
              "environments of the recipe are in no image");
 }

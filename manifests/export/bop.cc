@@ -5,6 +5,7 @@
 #include "manifests/export/bop_model.h"
 #include "manifests/export/exporter.h"
 #include "manifests/export/run_lengths.h"
+#include "manifests/export/shown_objects.h"
 #include "manifests/json_text.h"
 #include "tracer/base/error.h"
 #include "tracer/render/develop.h"
@@ -13,6 +14,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
+#include <memory>
+#include <set>
 #include <utility>
 
 namespace ds {
@@ -131,6 +135,10 @@ std::vector<int> box_of(const MaskPixels& mask) {
   return {(*box)[0], (*box)[1], (*box)[2] - 1, (*box)[3] - 1};
 }
 
+void add_line(std::string& list, const json& object) {
+  list += (list.empty() ? "" : ",\n") + canonical_json(object);
+}
+
 /// A file of one object whose members are added one after the other.
 class Members {
  public:
@@ -146,10 +154,34 @@ class Members {
 
 struct Scene {
   std::string folder;
-  std::size_t number = 0, images = 0;
+  std::size_t number = 0, images = 0, annotations = 0;
   Members camera, gt, info;
   std::string coco_images, coco_annotations;
 };
+
+/// A model in one size, which is an object of the format's.
+struct BopObject {
+  std::uint64_t id = 0;             ///< from 1
+  ModelPose pose;                   ///< in which the model was taken
+  std::shared_ptr<BopModel> model;  ///< none: to be read again
+};
+
+/// Of an object in an image.
+struct ObjectPixels {
+  MaskPixels visible, whole;
+};
+
+double size_of(const ModelPose& pose) {
+  const auto& m = pose.model_to_world;
+  return std::sqrt(m[0] * m[0] + m[4] * m[4] + m[8] * m[8]);
+}
+
+/// What tells the models of a dataset apart, each in its size.
+std::string object_key(const std::string& name, const ModelPose& pose) {
+  const Vec3d low = pose.model_box.least, high = pose.model_box.most;
+  return fmt::format("{}\n{:.12g} {} {} {} {} {} {}", name, size_of(pose), low.x, low.y, low.z,
+                     high.x, high.y, high.z);
+}
 
 class Bop : public Exporter {
  public:
@@ -160,36 +192,31 @@ class Bop : public Exporter {
            "place of the folder");
   }
 
-  void add(const ExportImage& image) override {
-    const ImageRecord& record = image.record;
-    if (record.model != model_name_) take_model(image);
-    Scene& scene = scene_of(image.split);
-    const std::string number = fmt::format("{:06}", scene.images);
-    to_.place(file_of(image, "image"), scene.folder + "/rgb/" + number + ".png");
-    const DepthPixels depth = read_depth(input_, image, to_);
-    place_depth(image, depth, scene.folder + "/depth/" + number + ".png");
-    to_.place(file_of(image, "amodal_mask"), scene.folder + "/mask/" + number + "_000000.png");
-    to_.place(file_of(image, "mask"), scene.folder + "/mask_visib/" + number + "_000000.png");
-    add_labels(scene, image, depth);
-    ++scene.images;
-  }
-
+  void add(const ExportImage& image) override;
   void finish() override;
 
  private:
-  void take_model(const ExportImage& image);
+  const BopObject& object_of(const std::string& name, const std::string& class_path,
+                             const ModelPose& pose, const std::function<FileMesh()>& mesh);
+  const BopObject& model_of(const ImageRecord& record);
+  const BopObject& other_of(const ObjectRecord& record);
   Scene& scene_of(const std::string& split);
   void write_scene(const Scene& scene);
   void place_depth(const ExportImage& image, const DepthPixels& depth, const std::string& path);
-  void add_labels(Scene& scene, const ExportImage& image, const DepthPixels& depth);
-  void add_coco(Scene& scene, const ImageRecord& record, const MaskPixels& mask);
+  void add_camera(Scene& scene, const ImageRecord& record, const DepthPixels& depth);
+  void place_masks(const ExportImage& image, const Scene& scene, std::size_t place,
+                   const ObjectPixels& pixels);
+  json info_of(const ObjectPixels& pixels, const Silhouette& all, const DepthPixels& depth);
+  void add_coco(Scene& scene, const ImageRecord& record, std::uint64_t object,
+                const MaskPixels& mask);
 
   const ExportInput& input_;
   ExportFolder& to_;
-  std::string model_name_;  ///< images of one model follow each other
-  BopModel model_;
-  ModelPose pose_;            ///< in which model_ was taken
-  std::uint64_t object_ = 0;  ///< from 1
+  std::map<std::string, BopObject> known_;  ///< by object_key
+  std::size_t points_ = 0;                  ///< that their models hold
+  std::set<std::string> names_;             ///< of them
+  std::string model_name_;                  ///< images of one model follow each other
+  ModelPose model_pose_;                    ///< of its first
   Members models_info_;
   json objects_ = json::object();
   std::map<std::string, Scene> scenes_;  ///< the last of each split
@@ -197,32 +224,60 @@ class Bop : public Exporter {
   json camera_;
 };
 
-void Bop::take_model(const ExportImage& image) {
-  const ImageRecord& record = image.record;
+const BopObject& Bop::object_of(const std::string& name, const std::string& class_path,
+                                const ModelPose& pose, const std::function<FileMesh()>& mesh) {
+  constexpr std::size_t k_most_points = 4'000'000;
+  BopObject& object = known_[object_key(name, pose)];
+  if (object.model) return object;
+  if (points_ > k_most_points) {
+    for (auto& [key, other] : known_)
+      other.model.reset();
+    points_ = 0;
+  }
+  const bool is_new = object.id == 0;
+  if (is_new) object = {known_.size(), pose, nullptr};
+  object.model = std::make_shared<BopModel>(bop_model(mesh(), object.pose));
+  points_ += object.model->points.size();
+  if (!is_new) return object;
+  if (!names_.insert(name).second)
+    to_.note("models that are shown in several sizes are several objects");
+  const BopModel& model = *object.model;
+  to_.write(fmt::format("models/obj_{:06}.ply", object.id), ply_text(model));
+  const Vec3d side = model.most - model.least;
+  models_info_.add(std::to_string(object.id), {{"diameter", model.diameter},
+                                               {"min_x", model.least.x},
+                                               {"min_y", model.least.y},
+                                               {"min_z", model.least.z},
+                                               {"size_x", side.x},
+                                               {"size_y", side.y},
+                                               {"size_z", side.z}});
+  objects_[std::to_string(object.id)] = {{"model", name}, {"class_path", class_path}};
+  return object;
+}
+
+/// In the size of the model's first image.
+const BopObject& Bop::model_of(const ImageRecord& record) {
   if (!record.pose)
     fail(ErrorKind::asset, "the image {}: its line has no model_to_world; dsbuild build writes it",
          record.id);
-  model_name_ = record.model;
-  pose_ = *record.pose;
-  model_ = bop_model(input_.mesh(record), pose_);
-  ++object_;
-  to_.write(fmt::format("models/obj_{:06}.ply", object_), ply_text(model_));
-  const Vec3d side = model_.most - model_.least;
-  models_info_.add(std::to_string(object_), {{"diameter", model_.diameter},
-                                             {"min_x", model_.least.x},
-                                             {"min_y", model_.least.y},
-                                             {"min_z", model_.least.z},
-                                             {"size_x", side.x},
-                                             {"size_y", side.y},
-                                             {"size_z", side.z}});
-  objects_[std::to_string(object_)] = {{"model", record.model}, {"class_path", record.class_path}};
+  if (record.model != model_name_) {
+    model_name_ = record.model;
+    model_pose_ = *record.pose;
+  }
+  return object_of(record.model, record.class_path, model_pose_,
+                   [&] { return input_.mesh(record); });
+}
+
+const BopObject& Bop::other_of(const ObjectRecord& record) {
+  return object_of(record.model, record.class_path, record.pose,
+                   [&] { return input_.object_mesh(record); });
 }
 
 Scene& Bop::scene_of(const std::string& split) {
   Scene& scene = scenes_[split];
   if (scene.images == k_scene_images) {
     write_scene(scene);
-    scene = Scene{"", scene.number + 1, 0, {}, {}, {}, "", ""};
+    scene = Scene{"", scene.number + 1, 0, 0, {}, {}, {}, "", ""};
   }
   if (scene.folder.empty()) scene.folder = fmt::format("{}/{:06}", split, scene.number);
   return scene;
@@ -235,23 +290,33 @@ void Bop::place_depth(const ExportImage& image, const DepthPixels& depth, const 
   to_.write(path, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 
-void Bop::add_labels(Scene& scene, const ExportImage& image, const DepthPixels& depth) {
-  const ImageRecord& record = image.record;
-  const std::string number = std::to_string(scene.images);
+/// The model's masks are the dataset's files.
+void Bop::place_masks(const ExportImage& image, const Scene& scene, std::size_t place,
+                      const ObjectPixels& pixels) {
+  const std::string name = fmt::format("{:06}_{:06}.png", scene.images, place);
+  if (place == 0) {
+    to_.place(file_of(image, "amodal_mask"), scene.folder + "/mask/" + name);
+    to_.place(file_of(image, "mask"), scene.folder + "/mask_visib/" + name);
+    return;
+  }
+  for (const auto& [folder, mask] :
+       {std::pair("/mask/", &pixels.whole), std::pair("/mask_visib/", &pixels.visible)}) {
+    const std::vector<std::byte> png =
+        encode_png(BytePicture{mask->width, mask->height, 1, mask->values});
+    to_.write(scene.folder + folder + name,
+              {reinterpret_cast<const char*>(png.data()), png.size()});
+  }
+}
+
+void Bop::add_camera(Scene& scene, const ImageRecord& record, const DepthPixels& depth) {
   const auto world = world_to_camera(record.camera_to_world);
-  if (!record.pose)
-    fail(ErrorKind::asset, "the image {}: its line has no model_to_world; dsbuild build writes it",
-         record.id);
-  const auto to_camera =
-      model_to_camera(moved_with(world, pose_, *record.pose, record), model_.middle_m);
-  const std::array<double, 9>& pinhole = intrinsics_for("bop", record);
-  std::array<double, 9> k = pinhole;
+  std::array<double, 9> k = intrinsics_for("bop", record);
   k[2] -= 0.5;
   k[5] -= 0.5;
-  scene.camera.add(number, {{"cam_K", k},
-                            {"depth_scale", depth.tick_mm},
-                            {"cam_R_w2c", rotation_of(world)},
-                            {"cam_t_w2c", translation_of(world)}});
+  scene.camera.add(std::to_string(scene.images), {{"cam_K", k},
+                                                  {"depth_scale", depth.tick_mm},
+                                                  {"cam_R_w2c", rotation_of(world)},
+                                                  {"cam_t_w2c", translation_of(world)}});
   if (camera_.is_null())
     camera_ = {{"cx", k[2]},
                {"cy", k[5]},
@@ -260,61 +325,102 @@ void Bop::add_labels(Scene& scene, const ExportImage& image, const DepthPixels& 
                {"width", record.width},
                {"height", record.height},
                {"depth_scale", depth.tick_mm}};
-  scene.gt.add(number, json::array({{{"obj_id", object_},
-                                     {"cam_R_m2c", rotation_of(to_camera)},
-                                     {"cam_t_m2c", translation_of(to_camera)}}}));
-  const MaskPixels mask = read_mask(input_, image), whole = read_mask(input_, image, "amodal_mask");
-  const Silhouette all = silhouette(model_, to_camera, pinhole, record.width, record.height);
+}
+
+json Bop::info_of(const ObjectPixels& pixels, const Silhouette& all, const DepthPixels& depth) {
+  const MaskPixels& whole = pixels.whole;
   if (!all.whole)
     to_.note("models of which some is behind the camera: px_count_all and bbox_obj lack that");
   // By the picture's own rays where it holds all of the model.
   const bool inside = all.box[0] > 0 && all.box[1] > 0 &&
-                      all.box[0] + all.box[2] < record.width - 1 &&
-                      all.box[1] + all.box[3] < record.height - 1;
-  const std::uint64_t pixels = inside ? area_of(whole) : std::max(all.pixels, area_of(whole));
+                      all.box[0] + all.box[2] < whole.width - 1 &&
+                      all.box[1] + all.box[3] < whole.height - 1;
+  const std::uint64_t count = inside ? area_of(whole) : std::max(all.pixels, area_of(whole));
   std::uint64_t valid = 0;
   for (std::size_t i = 0; i < whole.values.size(); ++i)
     valid += whole.values[i] != 0 && depth.ticks[i] != 0 ? 1U : 0U;
-  const std::uint64_t seen = area_of(mask);
-  const double fraction =
-      pixels == 0 ? 0.0 : static_cast<double>(seen) / static_cast<double>(pixels);
-  scene.info.add(number, json::array({{{"bbox_obj", inside ? json(box_of(whole)) : json(all.box)},
-                                       {"bbox_visib", box_of(mask)},
-                                       {"px_count_all", pixels},
-                                       {"px_count_valid", valid},
-                                       {"px_count_visib", seen},
-                                       {"visib_fract", fraction}}}));
-  if (image.split == "test" && fraction >= 0.1)
-    targets_.push_back({{"scene_id", scene.number},
-                        {"im_id", scene.images},
-                        {"obj_id", object_},
-                        {"inst_count", 1}});
-  add_coco(scene, record, mask);
+  const std::uint64_t seen = area_of(pixels.visible);
+  return {
+      {"bbox_obj", inside ? json(box_of(whole)) : json(all.box)},
+      {"bbox_visib", box_of(pixels.visible)},
+      {"px_count_all", count},
+      {"px_count_valid", valid},
+      {"px_count_visib", seen},
+      {"visib_fract", count == 0 ? 0.0 : static_cast<double>(seen) / static_cast<double>(count)}};
 }
 
-void Bop::add_coco(Scene& scene, const ImageRecord& record, const MaskPixels& mask) {
-  const auto append = [](std::string& list, const json& object) {
-    list += (list.empty() ? "" : ",\n") + canonical_json(object);
-  };
-  append(scene.coco_images, {{"id", scene.images},
-                             {"file_name", fmt::format("rgb/{:06}.png", scene.images)},
-                             {"width", record.width},
-                             {"height", record.height},
-                             {"dsbuild_id", record.id}});
+/// Of what an image shows beside its model, no plane holds the whole: its mesh tells it.
+MaskPixels whole_mask(const Silhouette& all, MaskPixels visible) {
+  for (const auto& [x, y] : all.inside)
+    visible.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(visible.width) +
+                   static_cast<std::size_t>(x)] = 255;
+  return visible;
+}
+
+void Bop::add(const ExportImage& image) {
+  const ImageRecord& record = image.record;
+  Scene& scene = scene_of(image.split);
+  const std::string number = fmt::format("{:06}", scene.images);
+  to_.place(file_of(image, "image"), scene.folder + "/rgb/" + number + ".png");
+  const DepthPixels depth = read_depth(input_, image, to_);
+  place_depth(image, depth, scene.folder + "/depth/" + number + ".png");
+  add_camera(scene, record, depth);
+  const auto world = world_to_camera(record.camera_to_world);
+  json gt = json::array(), info = json::array();
+  std::map<std::uint64_t, std::uint64_t> targets;  // instances by object
+  for (ShownObject& shown : shown_objects(input_, image)) {
+    const bool is_model = shown.record == nullptr;
+    const BopObject& object = is_model ? model_of(record) : other_of(*shown.record);
+    const ModelPose& pose = is_model ? *record.pose : shown.record->pose;
+    const auto to_camera =
+        model_to_camera(moved_with(world, object.pose, pose, record), object.model->middle_m);
+    const Silhouette all = silhouette(*object.model, to_camera, intrinsics_for("bop", record),
+                                      record.width, record.height);
+    ObjectPixels pixels{std::move(shown.mask), {}};
+    pixels.whole =
+        is_model ? read_mask(input_, image, "amodal_mask") : whole_mask(all, pixels.visible);
+    place_masks(image, scene, gt.size(), pixels);
+    gt.push_back({{"obj_id", object.id},
+                  {"cam_R_m2c", rotation_of(to_camera)},
+                  {"cam_t_m2c", translation_of(to_camera)}});
+    info.push_back(info_of(pixels, all, depth));
+    if (info.back()["visib_fract"] >= 0.1) ++targets[object.id];
+    add_coco(scene, record, object.id, pixels.visible);
+  }
+  scene.gt.add(std::to_string(scene.images), gt);
+  scene.info.add(std::to_string(scene.images), info);
+  if (image.split == "test")
+    for (const auto& [object, count] : targets)
+      targets_.push_back({{"scene_id", scene.number},
+                          {"im_id", scene.images},
+                          {"obj_id", object},
+                          {"inst_count", count}});
+  add_line(scene.coco_images, {{"id", scene.images},
+                               {"file_name", fmt::format("rgb/{:06}.png", scene.images)},
+                               {"width", record.width},
+                               {"height", record.height},
+                               {"dsbuild_id", record.id}});
+  ++scene.images;
+}
+
+void Bop::add_coco(Scene& scene, const ImageRecord& record, std::uint64_t object,
+                   const MaskPixels& mask) {
   const auto box = tight_box(mask);
+  ++scene.annotations;
   if (!box) return;
-  append(scene.coco_annotations,
-         {{"id", scene.images + 1},
-          {"image_id", scene.images},
-          {"category_id", object_},
-          {"iscrowd", 0},
-          {"ignore", false},
-          {"area", area_of(mask)},
-          {"bbox", *box},
-          {"width", record.width},
-          {"height", record.height},
-          {"segmentation",
-           {{"size", {mask.height, mask.width}}, {"counts", run_length_text(run_lengths(mask))}}}});
+  add_line(
+      scene.coco_annotations,
+      {{"id", scene.annotations},
+       {"image_id", scene.images},
+       {"category_id", object},
+       {"iscrowd", 0},
+       {"ignore", false},
+       {"area", area_of(mask)},
+       {"bbox", *box},
+       {"width", record.width},
+       {"height", record.height},
+       {"segmentation",
+        {{"size", {mask.height, mask.width}}, {"counts", run_length_text(run_lengths(mask))}}}});
 }
 
 void Bop::write_scene(const Scene& scene) {
@@ -352,7 +458,8 @@ ExporterType bop_exporter() {
           {"image", "mask", "amodal_mask", "depth"},
           {"image", "mask", "amodal_mask", "depth"},
           false,
-          make_exporter<Bop>};
+          make_exporter<Bop>,
+          true};
 }
 
 }  // namespace ds

@@ -49,6 +49,7 @@ Silhouette found_on(const Canvas& canvas, int width, int height) {
   std::array<int, 4> box{3 * width, 3 * height, -1, -1};
   canvas.visit([&](int x, int y) {
     ++s.pixels;
+    if (x >= 0 && y >= 0 && x < width && y < height) s.inside.push_back({x, y});
     box = {std::min(box[0], x), std::min(box[1], y), std::max(box[2], x), std::max(box[3], y)};
   });
   if (s.pixels > 0) s.box = {box[0], box[1], box[2] - box[0], box[3] - box[1]};

@@ -30,6 +30,7 @@ struct Silhouette {
   std::uint64_t pixels = 0;
   /// x, y of the least pixel, and greatest less least, of the picture; -1 each where there is none.
   std::array<int, 4> box{-1, -1, -1, -1};
+  std::vector<std::array<int, 2>> inside;  ///< x, y of those of the picture itself
   bool whole = true;  ///< false: some of the model is behind the camera, and not counted
 };
 /// `to_camera` in millimetres, OpenCV axes, 3x4 row-major; `intrinsics` with pixel centres at .5.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // COCO detection and segmentation: annotations/instances_SPLIT.json, images/SPLIT/KEY.png. Masks are run
-// lengths: polygons would lose their holes. An image whose mask shows nothing has no annotation.
+// lengths: polygons would lose their holes. What an image shows nothing of, or what has no class, has no
+// annotation.
 #include "manifests/export/exporter.h"
 #include "manifests/export/run_lengths.h"
+#include "manifests/export/shown_objects.h"
 #include "manifests/json_text.h"
 
 #include <fmt/format.h>
@@ -37,17 +39,28 @@ class Coco : public Exporter {
                           {"height", record.height},
                           {"license", 1},
                           {"dsbuild_id", record.id}});
-    const MaskPixels mask = read_mask(input_, image);
+    for (const ShownObject& object : shown_objects(input_, image))
+      annotate(parts, object);
+  }
+
+  void annotate(Parts& parts, const ShownObject& object) {
+    const MaskPixels& mask = object.mask;
     const auto box = tight_box(mask);
     if (!box) {
-      to_.note("images whose mask shows nothing have no annotation");
+      to_.note(object.record == nullptr
+                   ? "images whose mask shows nothing have no annotation"
+                   : "distractors of which nothing is seen have no annotation");
+      return;
+    }
+    if (object.label < 0) {
+      to_.note("distractors without a class have no annotation");
       return;
     }
     append(
         parts.annotations,
         {{"id", ++annotation_id_},
          {"image_id", image_id_},
-         {"category_id", image.label + 1},
+         {"category_id", object.label + 1},
          {"iscrowd", 0},
          {"area", static_cast<double>(area_of(mask))},
          {"bbox", std::vector<double>(box->begin(), box->end())},
@@ -91,7 +104,8 @@ ExporterType coco_exporter() {
           {"image", "mask"},
           {"image", "mask"},
           true,
-          make_exporter<Coco>};
+          make_exporter<Coco>,
+          true};
 }
 
 }  // namespace ds

@@ -115,6 +115,7 @@ class Export {
   std::set<std::string> shared_stems_;         ///< of several models
   std::set<std::string> shared_names_;         ///< models of one name, though with their endings
   std::set<std::string> licensed_, unlicensed_;
+  std::uint64_t objects_ = 0;  ///< that images show beside their models
   ExportResult result_;
 };
 
@@ -185,6 +186,8 @@ void Export::choose_classes() {
     classes = at->second;
   }
   has_classes_ = !classes.empty();
+  input_.has_classes = has_classes_;
+  input_.of_hierarchy = !name.empty();
   input_.classes = has_classes_ ? std::move(classes) : std::vector<std::string>{"object"};
   for (const std::string& path : input_.classes)
     labels_.emplace(path, static_cast<int>(labels_.size()));
@@ -199,6 +202,7 @@ void Export::look() {
   check_manifest(request_.folder);
   input_.folder = request_.folder;
   input_.mesh = request_.mesh;
+  input_.object_mesh = request_.object_mesh;
   input_.dataset = read_dataset_manifest(request_.folder);
   choose_classes();
   visit([&](const ImageRecord& image) {
@@ -224,10 +228,14 @@ void Export::look() {
     ++input_.splits[split_of(image)];
     ++input_.counts[image.class_path][split_of(image)];
     const std::string size = fmt::format("{} x {}", image.width, image.height);
+    objects_ += image.objects.size();
     input_.size = input_.size.empty() || input_.size == size ? size : "of several sizes";
     for (const std::string& asset : {"models/" + image.model, "materials/" + image.material,
                                      "environments/" + image.environment})
       if (!is_licensed(asset)) unlicensed_.insert(asset);
+    for (const ObjectRecord& object : image.objects)
+      for (const std::string& asset : {"models/" + object.model, "materials/" + object.material})
+        if (!is_licensed(asset)) unlicensed_.insert(asset);
     add_key(image);
     std::vector<std::string> own;
     for (const FileRecord& file : image.files)
@@ -333,7 +341,8 @@ void Export::note_kinds(ExportFolder& to) const {
   if (type_->takes.empty()) return;
   std::vector<std::string> without;
   for (const std::string& kind : input_.kinds)
-    if (std::find(type_->takes.begin(), type_->takes.end(), kind) == type_->takes.end())
+    if (std::find(type_->takes.begin(), type_->takes.end(), kind) == type_->takes.end() &&
+        !(kind == "object_id" && type_->lists_objects && objects_ > 0))
       without.push_back(kind);
   if (!without.empty())
     to.note(fmt::format("{}: left out, the format {} has no place for it", fmt::join(without, ", "),
@@ -364,6 +373,10 @@ ExportResult Export::run(const std::function<void(std::uint64_t, std::uint64_t)>
   for (const std::string& note : request_.notes)
     to.note(note);
   note_kinds(to);
+  if (objects_ > 0 && !type_->lists_objects)
+    to.note(
+        fmt::format("{} distractors beside the models: left out, the format {} lists models alone",
+                    objects_, type_->name));
   std::set<std::string> keys;
   std::uint64_t done = 0;
   visit([&](ImageRecord&& record) {

@@ -28,6 +28,8 @@ struct ExportRequest {
   /// An image's model as its file has it, for formats that hold models; empty where only the dataset's
   /// folder is known.
   std::function<FileMesh(const ImageRecord&)> mesh{};
+  /// Likewise, of a thing that images show beside their models.
+  std::function<FileMesh(const ObjectRecord&)> object_mesh{};
   /// What readers must know of the dataset, as that its recipe wants more: a warning, and in the card.
   std::vector<std::string> notes{};
 };

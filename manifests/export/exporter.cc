@@ -29,6 +29,13 @@ bool ExportInput::has(const std::string& kind) const {
   return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
 }
 
+int ExportInput::label_of(const std::string& class_path) const {
+  if (!has_classes) return 0;
+  if (of_hierarchy) return -1;
+  const auto at = std::find(classes.begin(), classes.end(), class_path);
+  return at == classes.end() ? -1 : static_cast<int>(at - classes.begin());
+}
+
 const FileRecord& file_of(const ExportImage& image, std::string_view kind) {
   const auto& files = image.record.files;
   const auto at = std::find_if(files.begin(), files.end(),

@@ -50,8 +50,14 @@ struct ExportInput {
   std::vector<std::string> filters;     ///< "class=vehicle/*", "split=test": what was asked for
   std::string size;                     ///< "256 x 256", or "of several sizes"
   std::function<FileMesh(const ImageRecord&)> mesh;  ///< as in ExportRequest
+  std::function<FileMesh(const ObjectRecord&)> object_mesh;
+  bool has_classes = false;  ///< else all things are of the one class "object"
+  bool of_hierarchy =
+      false;  ///< classes are those of a further classification, which models alone have
 
   bool has(const std::string& kind) const;
+  /// Of a thing beside the model; -1 where it has none of the classes.
+  int label_of(const std::string& class_path) const;
 };
 
 /// Writes one format into a folder. Images come ordered by id.
@@ -72,6 +78,7 @@ struct ExporterType {
   std::vector<const char*> takes;  ///< kinds that it has a place for; empty: all
   bool needs_labels;               ///< images without class or split have no place in it
   std::unique_ptr<Exporter> (*make)(const ExportInput& input, ExportFolder& to);
+  bool lists_objects = false;  ///< that images show beside their models
 };
 
 /// `make` of a format.

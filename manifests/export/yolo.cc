@@ -4,6 +4,7 @@
 // has an empty file.
 #include "manifests/export/yolo.h"
 
+#include "manifests/export/shown_objects.h"
 #include "manifests/json_text.h"
 
 #include <fmt/format.h>
@@ -24,10 +25,14 @@ std::string box_line(const MaskPixels& mask) {
 void Yolo::add(const ExportImage& image) {
   to_.place(file_of(image, "image"), fmt::format("images/{}/{}{}", image.split, image.key,
                                                  ending_of(file_of(image, "image"))));
-  const MaskPixels mask = read_mask(input_, image);
-  const std::string line =
-      tight_box(mask) ? fmt::format("{}{}\n", image.label, line_(mask)) : std::string();
-  to_.write(fmt::format("labels/{}/{}.txt", image.split, image.key), line);
+  std::string lines;
+  for (const ShownObject& object : shown_objects(input_, image)) {
+    if (object.label < 0)
+      to_.note("distractors without a class have no label");
+    else if (tight_box(object.mask))
+      lines += fmt::format("{}{}\n", object.label, line_(object.mask));
+  }
+  to_.write(fmt::format("labels/{}/{}.txt", image.split, image.key), lines);
 }
 
 /// Without "path", which would count from the reader's working folder. Readers want train and val.
@@ -56,7 +61,8 @@ ExporterType yolo_exporter() {
           true,
           [](const ExportInput& input, ExportFolder& to) -> std::unique_ptr<Exporter> {
             return std::make_unique<Yolo>(input, to, box_line);
-          }};
+          },
+          true};
 }
 
 }  // namespace ds

@@ -29,7 +29,8 @@ ExporterType yolo_seg_exporter() {
           true,
           [](const ExportInput& input, ExportFolder& to) -> std::unique_ptr<Exporter> {
             return std::make_unique<Yolo>(input, to, outline_line);
-          }};
+          },
+          true};
 }
 
 }  // namespace ds

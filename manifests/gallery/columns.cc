@@ -35,6 +35,7 @@ constexpr std::array k_known = {
     Known{"truncation", "truncation", "share"},
     Known{"occlusion", "occlusion", "share"},
     Known{"border", "mask on the border", "pixels"},
+    Known{"objects", "distractors", ""},
     Known{"box_x", "box centre x", "share"},
     Known{"box_y", "box centre y", "share"},
     Known{"brightness", "brightness", "share"},
@@ -242,6 +243,8 @@ void GalleryColumns::add(const json& line, const ImageExtras& extras) {
   number("truncation", number_of(line, "truncation"));
   number("occlusion", number_of(line, "occlusion"));
   number("border", number_of(line, "pixel_counts", "frame"));
+  if (const auto objects = line.find("objects"); objects != line.end() && objects->is_array())
+    number("objects", static_cast<double>(objects->size()));
   if (extras.box && pixels > 0) {
     const auto& box = *extras.box;
     number("box_x", (box[0] + box[2] / 2.0) / width);

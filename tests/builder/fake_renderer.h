@@ -65,6 +65,14 @@ class FakeRenderer : public Renderer {
     return planes_by_seed(image, types,
                           hash64_text(read_text_file(image.model_file) + *image.view));
   }
+  std::vector<Plane> trace_distractors(const ImageSpec& image) override {
+    std::vector<Plane> masks;
+    for (const Distractor& one : *image.distractors)
+      masks.push_back(
+          planes_by_seed(image, {&plane_type("amodal_mask")}, hash64_text(*one.model.name))
+              .front());
+    return masks;
+  }
   void expect(const ImageSpec& image, SceneUse /*use*/) override {
     calls_.expected.push_back(image.id);
   }

@@ -10,7 +10,8 @@ from harness import IMAGES, TinyCase, main
 NONE = {name: 0 for name in ("mask_empty", "mask_at_frame", "mask_small", "picture_black", "picture_white",
                              "models_absent", "models_unlisted", "entries_ambiguous", "classes_unshared",
                              "classes_empty", "splits_empty", "assets_unphysical", "assets_unlikely", "sizes_unlikely",
-                             "names_by_case", "meshes_damaged", "models_unlikely", "own_materials_partial")}
+                             "names_by_case", "meshes_damaged", "models_unlikely", "own_materials_partial",
+                             "distractors_unplaced")}
 
 
 def grey_png(path):

@@ -63,6 +63,14 @@ ImageRecord record(const std::string& model) {
   image.other_classes = {{"coarse", "thing},\"environment\":"}, {"kind", ""}};
   image.draws = {{"camera.target", {{0.5, 0.25, 1}}}, {"n", {{3}, true}}};
   image.pose.emplace();
+  // Keys that the line has, too.
+  ObjectRecord object;
+  object.id = 101;
+  object.model = "other.ply";
+  object.material = "green";
+  object.class_path = "vessel";
+  object.pixels = ObjectCounts{101, 5, 6, 0, 1, 2, 3, 4};
+  image.objects = {object};
   return image;
 }
 

@@ -59,6 +59,20 @@ class ManifestTest : public testing::Test {
       image.draws = {{"camera.fov_deg", {{0.1 + 0.2}}}, {"outputs.quality", {{90}, true}}};
       image.pose = {{0, 2, 0, 0.1 + 0.2, -2, 0, 0, 4, 0, 0, 2, 5, 0, 0, 0, 1},
                     {{1, 2, 3}, {4, 5, 6}}};
+      ObjectRecord object;
+      object.id = 101;
+      object.model = "ball.ply";
+      object.class_path = "toy/ball";
+      object.class_id = 0;
+      object.material = "steel";
+      object.pose = *image.pose;
+      object.pixels = ObjectCounts{101, 30, 40, 2, 100, 150, 20, 98};
+      image.objects.push_back(object);
+      object.id = 103;
+      object.class_path.clear();
+      object.class_id.reset();
+      object.pixels.reset();
+      image.objects.push_back(object);
       image.film.samples = 256 * 128 * 64;
       image.film.least_spp = image.film.most_spp = 64;
       image.film.negative_samples = 3;
@@ -98,6 +112,25 @@ class ManifestTest : public testing::Test {
   std::vector<ImageRecord> images_;
 };
 
+TEST_F(ManifestTest, SaysOfObjectsWhatItSaysOfTheModel) {
+  const nlohmann::json line = nlohmann::json::parse(to_json_line(images_[0]));
+  const nlohmann::json& one = line["objects"][0];
+  for (const char* key : {"model_to_world", "model_to_camera", "model_box", "box_m"})
+    EXPECT_EQ(one[key], line[key]) << key;
+  EXPECT_EQ(one["box"], nlohmann::json({100, 20, 6, 10}));  // of 256 x 128
+  EXPECT_EQ(one["visible_fraction"], 0.75);
+  EXPECT_EQ(one["occlusion"], 0.25);
+  EXPECT_FALSE(line["objects"][1].contains("box"));
+  EXPECT_TRUE(line["objects"][1]["class_id"].is_null());
+  EXPECT_FALSE(line["pixel_counts"].contains("objects"));
+  images_[0].objects[0].pixels = ObjectCounts{101, 0, 0, 0, 256, 256, 128, 128};
+  const nlohmann::json hidden = nlohmann::json::parse(to_json_line(images_[0]))["objects"][0];
+  EXPECT_TRUE(hidden["box"].is_null() && hidden["visible_fraction"].is_null());
+  nlohmann::json wrong = line;
+  wrong["objects"][0]["pixels"].erase("seen");
+  EXPECT_THROW(image_from_json_line(wrong.dump(), "images.jsonl", 1), Error);
+}
+
 TEST_F(ManifestTest, ReadsBackWhatWasWritten) {
   write_manifest(folder_, dataset_, images_);
   const auto images = read_images_manifest(folder_);
@@ -115,6 +148,11 @@ TEST_F(ManifestTest, ReadsBackWhatWasWritten) {
     EXPECT_EQ(images[i].other_classes, images_[i].other_classes);
     EXPECT_EQ(images[i].draws, images_[i].draws);
     EXPECT_EQ(images[i].pose, images_[i].pose);
+    ASSERT_EQ(images[i].objects.size(), 2U);
+    EXPECT_EQ(images[i].objects[0].pixels, images_[i].objects[0].pixels);
+    EXPECT_EQ(images[i].objects[0].class_id, 0U);
+    EXPECT_EQ(images[i].objects[0].pose, images_[i].objects[0].pose);
+    EXPECT_FALSE(images[i].objects[1].pixels || images[i].objects[1].class_id);
     EXPECT_EQ(images[i].intrinsics, images_[i].intrinsics);
     EXPECT_EQ(images[i].camera_to_world, images_[i].camera_to_world);
     EXPECT_EQ(images[i].parts, images_[i].parts);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <bit>
 #include <vector>
 
 namespace ds {
@@ -42,6 +43,28 @@ TEST(PixelCountsTest, a_mask_touches_the_frame_in_its_outer_rows_and_columns) {
   const PixelCounts none = count_mask(std::vector<std::uint8_t>(20, 0), k_width, k_height);
   EXPECT_EQ(none.left, 5U);
   EXPECT_EQ(none.below, 4U);
+}
+
+TEST(PixelCountsTest, an_object_is_where_its_id_is) {
+  constexpr int k_width = 4, k_height = 3;
+  std::vector<float> ids(k_width * k_height), alone(k_width * k_height, 0.0f);
+  for (const std::size_t at : {5U, 6U, 9U})
+    ids[at] = std::bit_cast<float>(std::uint32_t{101});
+  ids[0] = std::bit_cast<float>(std::uint32_t{102});
+  for (const std::size_t at : {1U, 2U, 5U, 6U, 9U})
+    alone[at] = 1;
+  const ObjectCounts counts = count_object(101, ids, alone, k_width, k_height);
+  EXPECT_EQ(counts, (ObjectCounts{101, 3, 5, 1, 1, 1, 1, 0}));
+  PixelCounts all;
+  all.objects = {counts, count_object(103, ids, alone, k_width, k_height)};
+  EXPECT_EQ(all.objects[1].seen, 0U);
+  EXPECT_EQ(pixel_counts_from(to_json_value(all)), all);
+  PixelCounts none;
+  add_counts(none, all);
+  EXPECT_EQ(none.objects, all.objects);
+  EXPECT_THROW(pixel_counts_from({{"objects", {{{"id", 1}}}}}), Error);
+  EXPECT_THROW(pixel_counts_from({{"objects", {{{"seen", 1}}}}}), Error);
+  EXPECT_THROW(pixel_counts_from({{"objects", {{"id", 1}}}}), Error);
 }
 
 TEST(PixelCountsTest, what_was_not_counted_stays_absent) {

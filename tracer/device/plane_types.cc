@@ -48,6 +48,10 @@ SceneEffects with_light_planes(SceneEffects effects, std::span<const PlaneType* 
   return effects;
 }
 
+bool is_of_model_alone(const PlaneType& plane) {
+  return (plane.traits & kernels::k_plane_alone) != 0;
+}
+
 bool reads_materials(const PlaneType& plane) {
   return (plane.traits & kernels::k_plane_materials) != 0;
 }

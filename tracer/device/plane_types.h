@@ -27,6 +27,8 @@ const PlaneType& plane_type(std::string_view name);
 /// Whether it is a share of the picture, of its paths and samples; others ask no light and are traced
 /// by one ray a pixel.
 bool is_of_light(const PlaneType& plane);
+/// Whether it is as if nothing but the model were there.
+bool is_of_model_alone(const PlaneType& plane);
 /// Whether the plane's numbers come from the materials of what is hit.
 bool reads_materials(const PlaneType& plane);
 

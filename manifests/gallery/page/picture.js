@@ -78,12 +78,17 @@ function drawPicture() {
   const box = boxOf(image);
   if (on.has('box3')) drawing.append(...boxOverPicture(line));
   layers.append(drawing);
-  if (on.has('box') && box) {
-    drawing.append(svg('rect', {x: box[0], y: box[1], width: box[2], height: box[3], class: 'box'}));
-    const name = line.class_path || line.model, label = el('span', {className: 'box-label', textContent: name.slice(name.lastIndexOf('/') + 1)});
+  // Of the model, and of what stands beside it.
+  const frame = (box, of, kind) => {
+    drawing.append(svg('rect', {x: box[0], y: box[1], width: box[2], height: box[3], class: `box ${kind}`}));
+    const name = of.class_path || of.model, label = el('span', {className: `box-label ${kind}`, textContent: name.slice(name.lastIndexOf('/') + 1)});
     label.style.left = `${100 * box[0] / line.width}%`;
     label.style.top = `${100 * box[1] / line.height}%`;
     layers.append(label);
+  };
+  if (on.has('box')) {
+    for (const object of line.objects || []) if (object.box) frame(object.box, object, 'other');
+    if (box) frame(box, line, '');
   }
   const room = Math.min((stage.clientWidth - 16) / line.width, (stage.clientHeight - 16) / line.height);
   // As large as there is room for; whole numbers where the picture is the smaller.
@@ -147,6 +152,8 @@ function factRows(line) {
     ['occlusion', line.occlusion === undefined ? '' : percent(line.occlusion), []],
     ['seed', line.seed, []], ['tone map', `factor ${shortNumber(line.tone_map_scale)}`, []],
   ];
+  for (const object of line.objects || [])
+    rows.push([`object ${object.id}`, [object.model, object.class_path, object.material, object.visible_fraction === undefined ? '' : `${percent(object.visible_fraction)} visible`].filter(text => text).join(', '), []]);
   for (const [name, value] of Object.entries(line.draws || {})) rows.push([`drawn: ${name}`, Array.isArray(value) ? vector(value) : String(value), []]);
   const licences = (data.meta.licences || []).filter(licence => licence.assets.some(asset => [`models/${line.model}`, `materials/${line.material}`, `environments/${line.environment}`].some(own => asset === own || asset.startsWith(`${own}.`))));
   rows.push(['licences', [...new Set(licences.map(licence => licence.spdx || 'no SPDX id'))].join(', '), []]);

@@ -40,7 +40,11 @@ function boxOverPicture(line) {
   const box = worldBox(line);
   if (!box) return [];
   const points = box.map(p => projected(line, p)), [from, ...ends] = worldAxes(line).map(p => projected(line, p));
-  return [...EDGES.flatMap(([a, b]) => segment(points[a], points[b], 'box3')), ...ends.flatMap((end, k) => segment(from, end, `axis a${k}`))];
+  const others = (line.objects || []).flatMap(object => {
+    const own = worldBox(object).map(p => projected(line, p));
+    return EDGES.flatMap(([a, b]) => segment(own[a], own[b], 'box3 other'));
+  });
+  return [...others, ...EDGES.flatMap(([a, b]) => segment(points[a], points[b], 'box3')), ...ends.flatMap((end, k) => segment(from, end, `axis a${k}`))];
 }
 
 // The world from outside: the model's box and axes, the camera and what it sees. A drag or the arrows turn it.
@@ -64,7 +68,7 @@ function poseView(line) {
       const d = p.map((v, c) => v - centre[c]), x = Math.cos(yaw) * d[0] - Math.sin(yaw) * d[1], y = Math.sin(yaw) * d[0] + Math.cos(yaw) * d[1];
       return [size / 2 + x / reach * size / 2, size / 2 - (Math.cos(tilt) * d[2] + Math.sin(tilt) * y) / reach * size / 2];
     };
-    const parts = [];
+    const parts = (line.objects || []).map(worldBox).flatMap(own => EDGES.flatMap(([a, b]) => segment(at(own[a]), at(own[b]), 'box3 other')));
     for (let g = -2; g <= 2; ++g) {
       const s = reach / 2;
       parts.push(...segment(at([middle[0] + g * s / 2, middle[1] - s, floor]), at([middle[0] + g * s / 2, middle[1] + s, floor]), 'ground'));

@@ -33,6 +33,9 @@ const std::string k_random_place = R"(environments.assign="random")";
 // Models that stand in the floor, more or less.
 const std::string k_sunk = "models.place_m={box=[[0,0,-0.12],[0,0,0]]}";
 
+const std::string k_others = R"(distractors.dir="{models}")";
+const std::string k_places = "distractors.place_m={disc=0.3}";
+
 class Moving : public TinyDataset {
  protected:
   Moving() {
@@ -177,6 +180,17 @@ std::vector<Flip> Moving::flips() const {
       {"materials.assign", "\"cycle\"", "\"all\""},
       {"materials.per", "\"model\"", "\"view\"", {k_random_material}},
       {"materials.vary", "{}", "{\"*.kd\"={uniform=[0.1,0.2]}}"},
+      {"distractors.dir", path("models"), path("few_models"), {k_places}},
+      {"distractors.count", "1", "2", {k_others, k_places}},
+      {"distractors.place_m", "{disc=0.3}", "{disc=0.4}", {k_others}},
+      {"distractors.size_m", "0.05", "0.06", {k_others, k_places}},
+      {"distractors.turn", "\"none\"", "{rotation=\"up\"}", {k_others, k_places}},
+      {"distractors.gap_m", "0", "0.2", {k_others, k_places}},
+      {"distractors.tries", "1", "64", {k_others, "distractors.place_m={disc=0.2}"}},
+      {"distractors.class",
+       "\"\"",
+       "\"other\"",
+       {"distractors.dir=" + path("models"), k_places, "classes.from=" + path("all.cla")}},
       {"environments.dir", path("environments"), path("few_environments")},
       {"environments.files", paths("environments/plain"), paths("environments/floor")},
       {"environments.assign", "\"cycle\"", "\"all\""},

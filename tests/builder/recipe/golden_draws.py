@@ -68,10 +68,11 @@ WORDS = [
 ]
 IMAGES = [(0, "mug.ply", "0", 0), (1, "mug.ply", "13", 0), (2**62 + 1, "chair/1/model.obj", "7", 2), (0, "ütf.off", "0", 0)]
 
-for seed, model, view, attempt in IMAGES:
-    for text, key, word, per in WORDS:
-        identity = {"view": f"{model}/{view}", "model": model, "dataset": ""}[per]
-        u = lambda i: even(seed, identity, key, i, attempt)
-        values = word(u) if word else [360 * ((u(0) + int(view) * 0.6180339887498949) % 1)]
-        print("|".join([text, key, str(seed), model, view, str(attempt), u(0).hex(),
-                        " ".join(repr(value) for value in values)]))
+if __name__ == "__main__":
+    for seed, model, view, attempt in IMAGES:
+        for text, key, word, per in WORDS:
+            identity = {"view": f"{model}/{view}", "model": model, "dataset": ""}[per]
+            u = lambda i: even(seed, identity, key, i, attempt)
+            values = word(u) if word else [360 * ((u(0) + int(view) * 0.6180339887498949) % 1)]
+            print("|".join([text, key, str(seed), model, view, str(attempt), u(0).hex(),
+                            " ".join(repr(value) for value in values)]))

@@ -152,7 +152,7 @@ TEST_F(RecipeReadTest, ReportsAllFindingsWithTheirPlacesInTheirOrder) {
       "r.toml:11:14: models.ground_z_m must be a number in [-1000000, 1000000] or false, got true\n"
       "r.toml:13:32: materials.files must be a list of paths (strings), got 3\n"
       "r.toml:17:2: lights is no section of a recipe; there are dataset, models, classes, "
-      "materials, "
+      "materials, distractors, "
       "environments, camera, engine, outputs, check\n"
       "r.toml:19:9: outputs.depth must be \"exr\" or false, got true; outputs.planes = "
       "[\"depth\"] writes it\n"

@@ -71,6 +71,31 @@ TEST(Checks, ADatasetOfNothing) {
   run_checks(CheckInput{}, {});
 }
 
+TEST(Checks, AModelThatIsADistractorOfAnotherSplit) {
+  CheckInput input = clean();
+  for (ImageRecord& image : input.images)
+    image.pose = ModelPose{{}, {{0, 0, 0}, {1, 2, static_cast<double>(image.model.size())}}};
+  const auto beside = [](const char* model, double height) {
+    ObjectRecord object;
+    object.model = model;
+    object.pose.model_box = {{0, 0, 0}, {1, 2, height}};
+    object.pixels = ObjectCounts{101, 5, 6, 0, 0, 0, 0, 0};
+    return object;
+  };
+  image_of(input, "car0.ply/0").objects = {beside("mug1.ply", 8), beside("mug4.ply", 9)};
+  EXPECT_THAT(found(input, "leaks"), IsEmpty()) << "another mesh of that name is no leak";
+  image_of(input, "car0.ply/1").objects = {beside("mug4.ply", 8)};
+  EXPECT_THAT(found(input, "leaks"),
+              ElementsAre("error: 1/2 images show a model of another split as a distractor: "
+                          "car0.ply/1"));
+  image_of(input, "car0.ply/0").objects[0].pixels->seen = 0;
+  bool said = false;
+  for (const CheckFinding& finding : run_checks(input, {"masks"}))
+    said = said || (finding.count == 1 && finding.of == 3 &&
+                    finding.what == "distractors are out of their picture or wholly hidden");
+  EXPECT_TRUE(said);
+}
+
 TEST(Checks, OneMeshInTwoSplits) {
   CheckInput input = clean();
   for (const char* view : {"0", "1"})

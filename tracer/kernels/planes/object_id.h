@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Id of the object: 1 is the model, others are as the environment gives them (scene.objects.NAME.id);
-// 0 where nothing is hit or the object has none.
+// Id of the object: 1 is the model, those of distractors begin with 101, others are as the environment gives them
+// (scene.objects.NAME.id); 0 where nothing is hit or the object has none.
 #pragma once
 
 #include "tracer/kernels/plane.h"
