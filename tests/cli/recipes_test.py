@@ -9,6 +9,7 @@ SMALL = ["--set", "engine.error=false", "--set", "engine.spp=1", "--set", "engin
 # What of each is built: the rest is more of the same.
 TASKS = {
     "classification": ["--set", "camera.views=[1]"],
+    "detection": ["--set", "camera.count=2", "--set", "models.files=[{models}]"],
     "segmentation": ["--set", "camera.views=[0, 5]", "--set", "models.files=[{models}]"],
     "pose": ["--set", "camera.count=4"],
     "nerf": ["--set", "camera.count=8"],
