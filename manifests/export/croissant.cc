@@ -47,7 +47,7 @@ json text_of(const DatasetRecord& dataset, const char* name, const std::string& 
 }
 
 /// A column of the files as a field of the records.
-json field_of(const ParquetFile::Column& column) {
+json field_of(const ParquetFile::Column& column, const DatasetRecord& dataset) {
   json source{{"fileSet", {{"@id", k_files}}}, {"extract", {{"column", column.name}}}};
   json field{
       {"@type", "cr:Field"}, {"@id", std::string("images/") + column.name}, {"name", column.name}};
@@ -70,6 +70,13 @@ json field_of(const ParquetFile::Column& column) {
       field["isArray"] = true;
       field["arrayShape"] = "4";
       break;
+    case ParquetType::float64_list: {
+      const auto at = dataset.draws.find(column.name.substr(column.name.find('.') + 1));
+      field["dataType"] = "sc:Float";
+      field["isArray"] = true;
+      field["arrayShape"] = std::to_string(at->second.least.size());
+      break;
+    }
     case ParquetType::float64_matrix:
       field["dataType"] = "sc:Float";
       field["isArray"] = true;
@@ -153,7 +160,7 @@ class Croissant : public Exporter {
         to_.note(fmt::format("croissant.json lacks what dataset.{} of the recipe would say", name));
     json fields = json::array({split_field(input_)});
     for (const ParquetFile::Column& column : parquet_.columns())
-      fields.push_back(field_of(column));
+      fields.push_back(field_of(column, dataset));
     json object{{"@context", context()},
                 {"@type", "sc:Dataset"},
                 {"conformsTo",

@@ -27,6 +27,31 @@ constexpr std::pair<const char*, ParquetType> k_fields[] = {
     {"relative_error", ParquetType::float64},
 };
 
+constexpr std::string_view k_draws = "draws.";
+
+/// Those that every image has one of, if any.
+std::vector<ParquetFile::Column> draw_columns(const DatasetRecord& dataset) {
+  std::vector<ParquetFile::Column> columns;
+  for (const auto& [key, draw] : dataset.draws) {
+    const bool of_each = key.starts_with("distractors.") && key != "distractors.count";
+    if (of_each || draw.least.empty()) continue;
+    const ParquetType type = draw.least.size() > 1                       ? ParquetType::float64_list
+                             : draw.distribution.starts_with("{integer") ? ParquetType::int64
+                                                                         : ParquetType::float64;
+    columns.push_back({std::string(k_draws) + key, type});
+  }
+  return columns;
+}
+
+nlohmann::json value_of(const DrawRecords& draws, const ParquetFile::Column& column) {
+  const auto at = draws.find(column.name.substr(k_draws.size()));
+  if (at == draws.end()) return {};
+  const std::vector<double>& values = at->second.values;
+  if (column.type == ParquetType::float64_list) return values;
+  if (column.type == ParquetType::int64) return static_cast<std::int64_t>(values.front());
+  return values.front();
+}
+
 /// As a card has it, which is not as the library's own JSON does.
 nlohmann::json hub_feature(const ParquetFile::Column& column, const ExportInput& input,
                            bool named_labels) {
@@ -54,6 +79,9 @@ nlohmann::json hub_feature(const ParquetFile::Column& column, const ExportInput&
     case ParquetType::int64_list:
       feature["sequence"] = "int64";
       break;
+    case ParquetType::float64_list:
+      feature["sequence"] = "float64";
+      break;
     case ParquetType::float64_matrix:
       feature["sequence"] = {{"sequence", "float64"}};
       break;
@@ -69,7 +97,17 @@ std::vector<ParquetFile::Column> sample_columns(const ExportInput& input) {
     columns.push_back({name, type});
   if (has_folds(input.dataset)) columns.push_back({"fold", ParquetType::int64});
   if (input.has("mask")) columns.push_back({"bbox", ParquetType::int64_list});
+  for (const ParquetFile::Column& column : draw_columns(input.dataset))
+    columns.push_back(column);
   return columns;
+}
+
+nlohmann::json hub_fields(const ExportInput& input, const ExportImage& image) {
+  nlohmann::json fields = sample_fields(input, image);
+  fields.erase("draws");
+  for (const ParquetFile::Column& column : draw_columns(input.dataset))
+    fields[column.name] = value_of(image.record.draws, column);
+  return fields;
 }
 
 std::string hub_lines(const ExportInput& input, const std::vector<ParquetFile::Column>& columns,

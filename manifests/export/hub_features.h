@@ -10,9 +10,13 @@
 
 namespace ds {
 
-/// What sample_fields gives besides id and split, with its type; of a dataset with masks also bbox, with folds
-/// fold.
+/// What hub_fields gives besides id and split, with its type; of a dataset with masks also bbox, with folds
+/// fold, and a column for each key that is drawn, but for what is drawn for each distractor.
 std::vector<ParquetFile::Column> sample_columns(const ExportInput& input);
+
+/// sample_fields with what is drawn by columns, "draws.camera.fov_deg", in the place of an object; null where
+/// the image has no such draw.
+nlohmann::json hub_fields(const ExportInput& input, const ExportImage& image);
 
 /// Lines of a card's front matter that Hugging Face's datasets reads: dataset_info (features, and of each split
 /// images and bytes) and configs. JSON, which is YAML. `paths`: of each split, where its files are.

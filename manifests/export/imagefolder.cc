@@ -18,7 +18,7 @@ class ImageFolder : public Exporter {
   }
 
   void add(const ExportImage& image) override {
-    nlohmann::json fields = sample_fields(input_, image);
+    nlohmann::json fields = hub_fields(input_, image);
     for (const std::string& kind : input_.kinds) {
       const std::string path = place_of_kind(image, kind);
       to_.place(file_of(image, kind), image.split + "/" + path);

@@ -31,6 +31,8 @@ nlohmann::json feature(ParquetType type) {
       return {{"_type", "Image"}};
     case ParquetType::int64_list:
       return list(value("int64"));
+    case ParquetType::float64_list:
+      return list(value("float64"));
     case ParquetType::float64_matrix:
       return list(list(value("float64")));
   }
@@ -73,7 +75,7 @@ void Parquet::add(const ExportImage& image) {
   if (!split.file)
     split.file = std::make_unique<ParquetFile>(
         to_, fmt::format("data/{}-{:05}.parquet", image.split, split.number++), columns_, info_);
-  split.file->add(sample_fields(input_, image), images);
+  split.file->add(hub_fields(input_, image), images);
 }
 
 void Parquet::finish() {

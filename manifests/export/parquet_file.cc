@@ -109,6 +109,9 @@ ParquetFile::ParquetFile(ExportFolder& to, const std::string& path, std::vector<
       case ParquetType::int64_list:
         leaves_.push_back({{name, "list", "element"}, k_int64, 3, 1});
         break;
+      case ParquetType::float64_list:
+        leaves_.push_back({{name, "list", "element"}, k_double, 3, 1});
+        break;
       case ParquetType::float64_matrix:
         leaves_.push_back({{name, "list", "element", "list", "element"}, k_double, 5, 2});
         break;
@@ -241,9 +244,10 @@ void ParquetFile::close() {
         add("path", k_optional, 0, k_byte_array, k_utf8);
         break;
       case ParquetType::int64_list:
+      case ParquetType::float64_list:
         add(name, k_optional, 1, {}, k_list);
         add("list", k_repeated, 1, {}, {});
-        add("element", k_optional, 0, k_int64, {});
+        add("element", k_optional, 0, type == ParquetType::int64_list ? k_int64 : k_double, {});
         break;
       case ParquetType::float64_matrix:
         add(name, k_optional, 1, {}, k_list);

@@ -20,6 +20,7 @@ enum class ParquetType {
   float64,
   image,           ///< a group of bytes and path
   int64_list,      ///< of at least one number
+  float64_list,    ///< likewise
   float64_matrix,  ///< a list of lists, none of them empty
 };
 

@@ -126,6 +126,38 @@ class ConsumersTest(TinyCase):
                 self.assertEqual(row["bbox"], [xs.min(), ys.min(), numpy.ptp(xs) + 1, numpy.ptp(ys) + 1])
         self.assertEqual(seen, set(self.records))
 
+    def test_what_is_drawn_is_columns(self):
+        self.recipe.write_text(self.recipe.read_text() + """
+[distractors]
+dir = "{models}"
+count = { integer = [0, 2] }
+place_m = { disc = [0.1, 0.3] }
+[outputs.camera]
+exposure_ev = { normal = [0, 0.3], within = [-1, 1] }
+jpeg_quality = { integer = [60, 95] }
+""")
+        self.build("--set", 'models.turn={rotation="up"}', "--set", "camera.target={ball=0.01}", "--set", 'dataset.licence="CC0-1.0"')
+        lines = (self.out / "manifest/images.jsonl").read_text().splitlines()
+        self.records = {record["id"]: record for record in map(json.loads, lines)}
+        keys = ["camera.target", "distractors.count", "models.turn", "outputs.camera.exposure_ev", "outputs.camera.jpeg_quality"]
+        for format in ("parquet", "imagefolder"):
+            self.export(format)
+            self.expect_card(format)
+            seen = 0
+            for rows in self.load(str(self.to)).values():
+                self.assertEqual([name for name in rows.features if name.startswith("draws.")], [f"draws.{key}" for key in keys])
+                for row in rows:
+                    for key in keys:
+                        self.assertEqual(row[f"draws.{key}"], self.records[row["id"]]["draws"][key], (format, key))
+                        seen += 1
+            self.assertEqual(seen, IMAGES * len(keys))
+        self.export("croissant")
+        dataset = mlcroissant.Dataset(jsonld=str(self.to / "croissant.json"))
+        for row in dataset.records("images"):
+            record = self.records[row["images/id"].decode()]
+            for key in keys[:1] + keys[3:]:
+                numpy.testing.assert_allclose(row[f"images/draws.{key}"], record["draws"][key], rtol=0)
+
     def test_parquet_of_parallel_rays(self):
         self.edit("recipe.toml", "fov_deg = 49", 'type = "orthographic"\nextent_m = 0.25')
         self.build()
@@ -170,7 +202,9 @@ class ConsumersTest(TinyCase):
             recipes.validate(tomllib.loads(right))
         (self.tiny / "more.csv").write_text("name,class\nbox,a\n")
         for more in ([], ["outputs.planes=['mask', 'amodal_mask', 'depth']", f"classes.more=['{self.tiny / 'more.csv'}']",
-                          "dataset.cite='me'", "engine.error=0.5"], ["models.size_m=0.1"]):
+                          "dataset.cite='me'", "engine.error=0.5"],
+                     ["distractors.dir='{models}'", "distractors.count=2", "distractors.place_m={disc=[0.2,0.4]}"],
+                     ["models.size_m=0.1"]):
             if "models.size_m=0.1" in more:
                 self.edit("recipe.toml", "fov_deg = 49", 'type = "orthographic"\nextent_m = 0.25')
             self.build(*[word for one in more for word in ("--set", one)])
