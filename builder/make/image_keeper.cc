@@ -301,7 +301,7 @@ Product ImageKeeper::plane_file(Ready& ready, const OutputFile& output,
                     traced.planes_run);
 }
 
-void ImageKeeper::put_objects(const std::vector<Ready*>& images) {
+void ImageKeeper::put_objects(const std::vector<Ready*>& images) const {
   std::vector<Store::NewObject> objects;
   std::vector<std::string> records;
   for (const Ready* image : images) {

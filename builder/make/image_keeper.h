@@ -82,7 +82,7 @@ class ImageKeeper {
                      const TraceRun& run) const;
   Product developed(Ready& ready, const OutputFile& output, const TracedImage& traced) const;
   Product plane_file(Ready& ready, const OutputFile& output, const TracedImage& traced) const;
-  void put_objects(const std::vector<Ready*>& images);
+  void put_objects(const std::vector<Ready*>& images) const;
   void commit(const std::vector<Ready*>& images);
   void enter(const PlannedImage& image, const Ready* ready);
   void enter_stamps();

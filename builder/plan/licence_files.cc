@@ -12,6 +12,7 @@
 #include <optional>
 #include <set>
 #include <system_error>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -92,8 +93,8 @@ void check_licensed(const Recipe& recipe) {
     for (const auto& [name, text] : licences_beside(kind, assets))
       licensed.insert(name);
     for (const auto& [name, asset] : assets)
-      if (const std::string whole = kind + "/" + name; !licensed.contains(whole))
-        without.push_back(whole);
+      if (std::string whole = fmt::format("{}/{}", kind, name); !licensed.contains(whole))
+        without.push_back(std::move(whole));
   }
   if (without.empty()) return;
   const auto shown =

@@ -111,7 +111,7 @@ Rejection ViewConditions::reject(const ImageSpec& image) {
           .hex();
   if (const auto known = inputs_.find_known(question))
     if (const auto rejection = rejection_from(*known)) return *rejection;
-  const Rejection rejection = look(image);
+  Rejection rejection = look(image);
   inputs_.keep_known(question, text_of(rejection));
   return rejection;
 }

@@ -126,7 +126,7 @@ std::string percent_decoded(std::string_view uri) {
 /// Where a uri leads, relative to the file that names it: never out of that file's folder.
 fs::path checked(const std::string& uri, const std::string& name) {
   const std::string decoded = percent_decoded(uri);
-  const fs::path path(decoded);
+  fs::path path(decoded);
   const bool leaves =
       path.is_absolute() ||
       std::any_of(path.begin(), path.end(), [](const fs::path& part) { return part == ".."; });
