@@ -181,11 +181,14 @@ int run_slurm(const Arguments& arguments) {
     print_json(object);
     return 0;
   }
+  std::string settings;
+  for (const std::string& assignment : arguments.overrides)
+    settings += " --set " + shell_quoted(assignment);
   say(Stream::report,
       "{}\nsubmitted: job {}, {} shares, and job {} behind it; logs: {}\n"
-      "how far they are: dsbuild status {} -o {}\n",
+      "how far they are: dsbuild status {} -o {}{}\n",
       summary(counts), jobs[0], job.shards, jobs[1], job.logs.string(),
-      shell_quoted(job.recipe.string()), shell_quoted(job.folder.string()));
+      shell_quoted(job.recipe.string()), shell_quoted(job.folder.string()), settings);
   return 0;
 }
 

@@ -49,7 +49,9 @@ void refuse_gc(const SlurmMark& mark) {
   refuse_filled_store(mark, "store gc");
   fail(ErrorKind::usage,
        "{}: {}, ended before the dataset was whole, and gc would remove what they made: go on by "
-       "dsbuild slurm or dsbuild build {}, then collect; or remove {} to give that up",
+       "dsbuild slurm, or by dsbuild build {} with the -o, --store, --set it had and --database, "
+       "then "
+       "collect; or remove {} to give that up",
        mark.file.parent_path().parent_path().string(), jobs_text(mark),
        shell_quoted(mark.recipe.string()), mark.file.string());
 }
@@ -188,7 +190,8 @@ int run_stats(const Arguments& arguments, Disk& disk) {
       amount_text(records));
   if (use.missing > 0)
     say(Stream::result,
-        "  {} objects that datasets name are missing (dsbuild build makes them again)\n",
+        "  {} objects that datasets name are missing (dsbuild build makes again what a folder "
+        "lacks of them)\n",
         use.missing);
   if (!use.temporaries.empty())
     say(Stream::result, "  left by killed builds: {}\n",
@@ -249,9 +252,19 @@ int run_gc(const Arguments& arguments, Disk& disk) {
 
 enum class Found { whole, removed, left };
 
-/// Removes a damaged file, and one that has gone meanwhile counts as removed; each is said.
-Found read_and_remove(Store& store, Store::Kind kind, Hash128 hash) {
+/// Only looks with `dry`; else removes a damaged file, and one that has gone meanwhile counts as removed.
+/// Each is said.
+Found read_and_remove(Store& store, Store::Kind kind, Hash128 hash, bool dry) {
   try {
+    if (dry) {
+      const Store::Health health = store.examine(kind, hash);
+      if (health == Store::Health::damaged)
+        warn(fmt::format("{} {} is damaged, and stays",
+                         kind == Store::Kind::object ? "object" : "record", hash.hex()));
+      return health == Store::Health::damaged ? Found::left
+             : health == Store::Health::whole ? Found::whole
+                                              : Found::removed;
+    }
     if (kind == Store::Kind::object ? store.intact(hash) : store.get_record(hash).has_value())
       return Found::whole;
     return store.examine(kind, hash) == Store::Health::damaged ? Found::left : Found::removed;
@@ -282,7 +295,7 @@ int run_store_verify(const Arguments& arguments, Disk& disk) {
     WorkProgress progress("files of the store read");
     for (const auto& [kind, hash] : all) {
       if (stop) fail(ErrorKind::cancelled, "stopped");
-      const Found found = read_and_remove(*open.store, kind, hash);
+      const Found found = read_and_remove(*open.store, kind, hash, arguments.dry_run);
       damaged += found == Found::whole ? 0U : 1U;
       left += found == Found::left ? 1U : 0U;
       progress(++done, all.size());
@@ -297,8 +310,12 @@ int run_store_verify(const Arguments& arguments, Disk& disk) {
     say(Stream::report,
         "{} files read, {} damaged{}; {} objects that datasets name are missing{}\n", all.size(),
         damaged,
-        left > 0 ? fmt::format(" ({} of them could not be removed)", left) : " and removed",
-        missing, damaged + missing > 0 ? "; dsbuild build makes them again" : "");
+        arguments.dry_run ? ""
+        : left > 0        ? fmt::format(" ({} of them could not be removed)", left)
+                          : " and removed",
+        missing,
+        damaged + missing > 0 ? "; dsbuild build makes again what a dataset's folder lacks of them"
+                              : "");
   return damaged + missing > 0 ? 1 : 0;
 }
 
@@ -310,22 +327,28 @@ int run_store(const Arguments& arguments) {
                {"gc", run_gc},
                {"verify", run_store_verify},
                {"gather", run_store_gather}}};
+  RealDisk disk;
+  std::vector<std::string_view> known;
+  for (const auto& [name, run] : k_tasks)
+    known.push_back(name);
+  const auto* const task = std::find_if(k_tasks.begin(), k_tasks.end(), [&](const auto& one) {
+    return one.first == arguments.store_task;
+  });
+  if (task == k_tasks.end())
+    fail(ErrorKind::usage, "store: wanted {}, got {}{}", fmt::format("{}", fmt::join(known, ", ")),
+         arguments.store_task, did_you_mean(arguments.store_task, known));
   if (arguments.store_task != "gc" && (!arguments.older.empty() || !arguments.size.empty()))
     fail(ErrorKind::usage, "store {}: --older and --size are for gc", arguments.store_task);
   if (arguments.store_task != "gather" &&
       (!arguments.other.empty() || !arguments.database_folder.empty()))
     fail(ErrorKind::usage, "store {}: a second store and --database are for gather",
          arguments.store_task);
-  if (arguments.store_task == "gather" && (arguments.dry_run || arguments.forget))
-    fail(ErrorKind::usage, "store gather: --dry-run and --forget are for gc");
-  RealDisk disk;
-  std::vector<std::string_view> known;
-  for (const auto& [name, run] : k_tasks) {
-    if (name == arguments.store_task) return run(arguments, disk);
-    known.push_back(name);
-  }
-  fail(ErrorKind::usage, "store: wanted {}, got {}{}", fmt::format("{}", fmt::join(known, ", ")),
-       arguments.store_task, did_you_mean(arguments.store_task, known));
+  if (arguments.store_task != "gc" && arguments.forget)
+    fail(ErrorKind::usage, "store {}: --forget is for gc", arguments.store_task);
+  const bool takes_dry_run = arguments.store_task == "gc" || arguments.store_task == "verify";
+  if (!takes_dry_run && arguments.dry_run)
+    fail(ErrorKind::usage, "store {}: --dry-run is for gc and verify", arguments.store_task);
+  return task->second(arguments, disk);
 }
 
 }  // namespace ds

@@ -131,9 +131,12 @@ class GatherTest(TinyCase):
         (self.folder / "full/notes.txt").write_text("mine")
         for words, said in ((["gather", self.a], "wanted the store that takes it, too"),
                             (["gather", self.a, self.a], "wanted two stores"),
-                            (["gather", self.a, self.store, "-n"], "--dry-run and --forget are for gc"),
+                            (["gather", self.a, self.store, "-n"], "--dry-run is for gc and verify"),
                             (["gather", self.a, self.folder / "full"], "full"),
                             (["gather", self.folder / "none", self.store], "none"),
+                            (["gahter", self.a, self.store], "did you mean gather?"),
+                            (["verify", self.a, "--forget"], "--forget is for gc"),
+                            (["stats", self.a, "-n"], "--dry-run is for gc and verify"),
                             (["stats", self.a, self.b], "a second store and --database are for gather"),
                             (["verify", self.a, "--database", self.b], "a second store and --database are for gather")):
             run = self.run_it("store", *words)

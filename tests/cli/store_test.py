@@ -119,6 +119,8 @@ class StoreTest(TinyCase):
         data = victim.read_bytes()
         victim.chmod(0o644)
         victim.write_bytes(bytes([data[0] ^ 1]) + data[1:])
+        looked = self.task("verify", "-n", code=1)
+        self.assertEqual((looked["damaged"], looked["not_removed"], victim.exists()), (1, 1, True))
         found = self.task("verify", code=1)
         self.assertEqual((found["damaged"], victim.exists()), (1, False))
         self.assertEqual(self.task("verify", code=1)["damaged"] if found["missing"] else 0, 0)
