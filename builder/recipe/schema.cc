@@ -114,7 +114,7 @@ json constants(DrawnKind kind) {
 }
 
 json schema_of(const DistributionWord& word, DrawnKind kind) {
-  const json radius{{"type", "number"}, {"minimum", 0}};
+  json radius{{"type", "number"}, {"minimum", 0}};
   switch (word.shape) {
     case WordShape::range:
     case WordShape::parameters:

@@ -144,7 +144,7 @@ void look_at_records(const Store& store, const Named& named, HashSet& objects, H
         name_all_hashes(text, objects);
       }
     }
-    use.files.push_back(std::move(found));
+    use.files.push_back(found);
   });
 }
 

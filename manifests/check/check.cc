@@ -67,7 +67,7 @@ void CheckReport::add(CheckLevel level, std::string what, const std::vector<std:
                        of,
                        {found.begin(), found.begin() + shown},
                        std::move(advice),
-                       images ? std::move(*images) : found});
+                       images.value_or(found)});
 }
 
 void CheckReport::say(CheckLevel level, std::string what, std::string advice) {
