@@ -6,6 +6,7 @@
 #include "tracer/base/disk_error.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
+#include "tracer/base/log.h"
 
 #include <charconv>
 #include <chrono>
@@ -62,10 +63,21 @@ Guest::Guest(const Store& store, const std::string& text)
   write_file_atomic(file_, text);
 }
 
-Guest::Guest(Guest&& other) noexcept : file_(std::exchange(other.file_, {})) {}
+Guest::Guest(Guest&& other) noexcept
+    : file_(std::exchange(other.file_, {})), builds_(other.builds_) {}
 
 Guest::~Guest() {
-  if (!file_.empty()) ::unlink(file_.c_str());
+  if (file_.empty()) return;
+  if (builds_) try {
+      note_filled();
+    } catch (const Error& error) {
+      warn(fmt::format("what was made may be made again: {}", error.what()));
+    }
+  ::unlink(file_.c_str());
+}
+
+void Guest::note_filled() const {
+  write_file_atomic(file_.parent_path().parent_path() / k_filled_file, "");
 }
 
 std::optional<Guest::Other> Guest::find_other(bool that_collects) const {
@@ -90,6 +102,8 @@ std::optional<Guest::Other> Guest::find_other(bool that_collects) const {
 Guest Guest::build(const Store& store, const std::string& what,
                    const std::function<void(const std::string& who)>& waits_for) {
   Guest guest(store, "build " + what);
+  guest.builds_ = true;
+  guest.note_filled();
   for (bool told = false;; told = true) {
     const std::optional<Other> other = guest.find_other(true);
     if (!other) return guest;

@@ -17,6 +17,11 @@ namespace ds {
 /// one sees the other. Files of processes of this machine that have gone are taken away by who comes
 /// next; what was killed on another machine leaves one that somebody has to remove, since nobody can
 /// tell.
+///
+/// What builds makes `filled` in the store as it comes and as it goes: its own database, if it has one, is to
+/// read the records that are new (open_database).
+inline constexpr const char* k_filled_file = "filled";
+
 class Guest {
  public:
   /// Builds into the store: waits for a collection, which `waits_for` is told once. Throws Error(io).
@@ -36,8 +41,10 @@ class Guest {
     std::string who;  ///< "process 17 on host"
   };
   std::optional<Other> find_other(bool that_collects) const;
+  void note_filled() const;
 
   std::filesystem::path file_;
+  bool builds_ = false;
 };
 
 }  // namespace ds

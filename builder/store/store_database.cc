@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/store/store_database.h"
 
+#include "builder/store/guest.h"
 #include "builder/store/made_record.h"
 #include "tracer/base/error.h"
 #include "tracer/base/log.h"
@@ -71,6 +72,19 @@ std::unique_ptr<Database> open_or_renew(const fs::path& file, Claims& claims) {
   return database;
 }
 
+fs::path taken_filled(const Store& store) {
+  return store.folder() / (std::string(k_filled_file) + ".taken");
+}
+
+/// Whether builds with databases of their own have been here since the records were last read. Its file
+/// has another name until they are: who is killed meanwhile leaves that, and who fills the store
+/// meanwhile makes a new one.
+bool take_filled(const Store& store) {
+  std::error_code error;
+  fs::rename(store.folder() / k_filled_file, taken_filled(store), error);
+  return !error || fs::exists(taken_filled(store), error);
+}
+
 /// With SQLite's log, of which the last parts may lie there alone.
 void copy_database(const Store& store, const fs::path& folder) {
   std::error_code error;
@@ -95,7 +109,10 @@ void enter_record(Database& database, const std::string& text) {
 std::unique_ptr<Database> open_database(Store& store, Claims& claims) {
   auto database = open_or_renew(store.folder() / k_database_file, claims);
   // New, set aside, removed or emptied by somebody: the records know what the store holds.
-  if (!database->has_products()) refill(*database, store);
+  const bool filled = take_filled(store);
+  if (filled || !database->has_products()) refill(*database, store);
+  std::error_code error;
+  if (filled) fs::remove(taken_filled(store), error);
   return database;
 }
 
@@ -109,7 +126,7 @@ std::unique_ptr<Database> open_database_copy(Store& store, bool with_records) {
   const fs::path folder = make_process_folder(parent);
   copy_database(store, folder);
   auto database = std::make_unique<Database>(folder / k_database_file);
-  if (with_records) refill(*database, store);
+  if (with_records || fs::exists(store.folder() / k_filled_file, error)) refill(*database, store);
   fs::remove_all(folder, error);  // what is open lives on
   return database;
 }

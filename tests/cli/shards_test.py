@@ -107,6 +107,16 @@ class ShardsTest(TinyCase):
         self.assert_counts(self.build(*VIEWS, "--store", self.folder / "store"), built=IMAGES, traced=0, developed=0)
         self.assert_whole()
 
+    def test_a_store_with_a_database_learns_what_builds_with_their_own_made(self):
+        store = ("--store", self.folder / "store")
+        self.build("--set", "engine.spp=1", *store, out=self.folder / "other")
+        for number in (1, 2):
+            self.build(*VIEWS, *store, "--no-files", "--database", self.folder / f"db-{number}", "--shard", f"{number}/2")
+        planned = self.run_it("plan", self.recipe, "-o", self.out, *VIEWS, *store, "--json").json
+        self.assertEqual((planned["stale"], planned["trace"]), (IMAGES, 0), planned)
+        self.assert_counts(self.build(*VIEWS, *store), built=IMAGES, traced=0, developed=0)
+        self.assertEqual(self.contents(), self.wanted)
+
     def test_the_documented_line_of_gnu_parallel(self):
         version = shutil.which("parallel") and subprocess.run(["parallel", "--version"], capture_output=True, text=True, check=False)
         if not version or "GNU parallel" not in version.stdout:
