@@ -246,7 +246,7 @@ void Export::look() {
   input_.unlicensed.assign(unlicensed_.begin(), unlicensed_.end());
   input_.left_out = result_.left_out;
   for (const auto& [key, pattern] : request_.filters)
-    input_.filters.push_back(key + "=" + pattern);
+    input_.filters.push_back(fmt::format("{}={}", key, pattern));
   for (const std::string& split : request_.splits)
     input_.filters.push_back("split=" + split);
   input_.kinds = kinds.value_or(std::vector<std::string>{});

@@ -61,7 +61,7 @@ std::string read_checked(const fs::path& folder, const FileRecord& file) {
   return bytes;
 }
 
-ExportFolder::ExportFolder(fs::path from, fs::path to, bool copy)
+ExportFolder::ExportFolder(fs::path from, const fs::path& to, bool copy)
     : from_(std::move(from)), whole_(apart(from_, to), k_export_folder), copy_(copy) {}
 
 ExportFolder::~ExportFolder() = default;

@@ -25,7 +25,7 @@ class ExportFolder {
  public:
   /// `from`: the dataset's folder. Throws Error(usage) where `to` is there and no export; with
   /// `copy` no file is shared with the dataset.
-  ExportFolder(std::filesystem::path from, std::filesystem::path to, bool copy);
+  ExportFolder(std::filesystem::path from, const std::filesystem::path& to, bool copy);
   ~ExportFolder();
   ExportFolder(const ExportFolder&) = delete;
   ExportFolder& operator=(const ExportFolder&) = delete;

@@ -68,7 +68,7 @@ class Nerf : public Exporter {
   static std::string add_file(Scene& scene, const ExportImage& image, const char* kind,
                               const char* folder) {
     const FileRecord& file = file_of(image, kind);
-    const std::string path = fmt::format("{}/{}{}", folder, image.key, ending_of(file));
+    std::string path = fmt::format("{}/{}{}", folder, image.key, ending_of(file));
     scene.files.emplace_back(file, path);
     return path;
   }
@@ -80,7 +80,7 @@ class Nerf : public Exporter {
             "scenes of a single view teach no depth: materials.per and environments.per = "
             "\"model\" keep a model's views together");
       for (const auto& [file, path] : scene.files)
-        to_.place(file, name + "/" + path);
+        to_.place(file, fmt::format("{}/{}", name, path));
       scene.head["frames"] = std::move(scene.frames);
       to_.write(name + "/transforms.json", canonical_json(scene.head, 1));
     }
