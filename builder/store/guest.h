@@ -10,6 +10,10 @@
 
 namespace ds {
 
+/// What a guest that builds makes in the store as it comes and as it goes: the store's own database, if there
+/// is one, is to read the records that are new (open_database).
+inline constexpr const char* k_filled_file = "filled";
+
 /// Who works in a store without a lock of its own there, since its database and locks are elsewhere
 /// (--database), and who collects it, tell each other by a file each in the store's `guests`:
 ///   HOST.PROCESS   its text is "gc" or "build", and what is built
@@ -17,11 +21,6 @@ namespace ds {
 /// one sees the other. Files of processes of this machine that have gone are taken away by who comes
 /// next; what was killed on another machine leaves one that somebody has to remove, since nobody can
 /// tell.
-///
-/// What builds makes `filled` in the store as it comes and as it goes: its own database, if it has one, is to
-/// read the records that are new (open_database).
-inline constexpr const char* k_filled_file = "filled";
-
 class Guest {
  public:
   /// Builds into the store: waits for a collection, which `waits_for` is told once. Throws Error(io).
