@@ -123,9 +123,10 @@ class ShardsTest(TinyCase):
             self.skipTest("no GNU parallel here")
         text = (self.source / "recipes/README.md").read_text().split("GNU parallel does the same by ssh:\n\n")[1].split("\n\n")[0]
         # The hosts are this one, by a shell in ssh's place; paths and numbers are this test's, the words are the page's.
+        # As sshd does, it sets SHELL: where that is missing, parallel's wrapper runs nothing and exits with 0.
         hosts = self.folder / "hosts"
         (self.folder / "bin").mkdir()
-        ssh = f'while [[ $1 == -* ]]; do shift; done\necho "$1" >>{hosts}\nshift\n[ "$1" != -- ] || shift\nexec bash -c "$*"'
+        ssh = f'while [[ $1 == -* ]]; do shift; done\necho "$1" >>{hosts}\nshift\n[ "$1" != -- ] || shift\nSHELL=/bin/bash exec bash -c "$*"'
         for name, lines in (("ssh", ssh), ("dsbuild", f'exec {self.dsbuild} "$@"')):
             (self.folder / "bin" / name).write_text(f"#!/bin/bash\n{lines}\n")
             (self.folder / "bin" / name).chmod(0o755)
