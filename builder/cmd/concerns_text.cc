@@ -131,16 +131,10 @@ std::size_t tell_concerns(const std::vector<Concern>& concerns, const Recipe& re
 }
 
 std::vector<Concern> tell_planned_concerns(const Recipe& recipe, const Plan& plan) {
-  std::vector<ImageFacts> images;
+  std::vector<const ImageSpec*> images;
   images.reserve(plan.images.size());
   for (const PlannedImage& image : plan.images)
-    if (!image.error)
-      images.push_back({image.spec.id,
-                        *image.spec.model_name,
-                        *image.spec.class_path,
-                        *image.spec.split,
-                        0,
-                        {}});
+    if (!image.error) images.push_back(&image.spec);
   std::vector<Concern> concerns = dataset_concerns(recipe, plan.concerns, {}, images);
   for (const Concern& concern : concerns)
     if (concern.count > 0 && !text_of(concern).said && !is_allowed(concern, recipe.coverage))

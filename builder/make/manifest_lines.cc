@@ -210,9 +210,9 @@ WrittenManifest Lines::write() {
   beyond_.remember(*dataset_.database);
   const std::size_t of_an_earlier_build = older_.size();
   made_.insert(made_.end(), older_.begin(), older_.end());
-  std::vector<ImageFacts> pending;
+  std::vector<const ImageSpec*> pending;
   for (const PlannedImage* image : work_.images.pending)
-    pending.push_back(facts_of(image->spec, {}));
+    pending.push_back(&image->spec);
   DatasetRecord record = dataset_record(dataset_.recipe, plan_, made_, pending);
   if (of_an_earlier_build > 0)
     record.counts.emplace_back("of_an_earlier_build", of_an_earlier_build);

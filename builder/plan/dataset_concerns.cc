@@ -39,7 +39,8 @@ void look_at_image(std::vector<Concern>& concerns, const ImageFacts& image) {
 
 /// Of the class files, which the recipe has read.
 void look_at_labels(std::vector<Concern>& concerns, const Recipe& recipe,
-                    const std::vector<ImageFacts>& images, const std::vector<ImageFacts>& pending) {
+                    const std::vector<ImageFacts>& images,
+                    const std::vector<const ImageSpec*>& pending) {
   Concern& absent = concern(concerns, "models_absent");
   absent = {absent.name, recipe.coverage.missing, recipe.coverage.listed,
             recipe.coverage.missing_examples};
@@ -56,12 +57,14 @@ void look_at_labels(std::vector<Concern>& concerns, const Recipe& recipe,
     add_example(unshared, path);
   // An image is of its class and of those above it.
   std::set<std::string, std::less<>> seen;
-  for (const std::vector<ImageFacts>* list : {&images, &pending})
-    for (const ImageFacts& image : *list) {
-      std::string_view path = image.class_path;
-      while (!path.empty() && seen.emplace(path).second)
-        path = path.substr(0, path.rfind('/') == path.npos ? 0 : path.rfind('/'));
-    }
+  const auto see = [&](std::string_view path) {
+    while (!path.empty() && seen.emplace(path).second)
+      path = path.substr(0, path.rfind('/') == path.npos ? 0 : path.rfind('/'));
+  };
+  for (const ImageFacts& image : images)
+    see(image.class_path);
+  for (const ImageSpec* image : pending)
+    see(*image->class_path);
   Concern& empty = concern(concerns, "classes_empty");
   empty.of = recipe.class_paths.size();
   for (const std::string& path : recipe.class_paths)
@@ -69,16 +72,18 @@ void look_at_labels(std::vector<Concern>& concerns, const Recipe& recipe,
 }
 
 void look_at_splits(std::vector<Concern>& concerns, const Recipe& recipe,
-                    const std::vector<ImageFacts>& images, const std::vector<ImageFacts>& pending) {
+                    const std::vector<ImageFacts>& images,
+                    const std::vector<const ImageSpec*>& pending) {
   const bool by_chance = recipe.split.test || !recipe.split.held_out.empty();
   const bool by_table = !recipe.classes_from.empty() && recipe.labels.has_splits();
   Concern& empty = concern(concerns, "splits_empty");
   const auto look_at = [&](const char* split, bool wanted) {
     if (!wanted) return;
     ++empty.of;
-    const auto is_of = [&](const ImageFacts& image) { return image.split == split; };
-    if (std::none_of(images.begin(), images.end(), is_of) &&
-        std::none_of(pending.begin(), pending.end(), is_of))
+    const auto is_made = [&](const ImageFacts& image) { return image.split == split; };
+    const auto is_to_come = [&](const ImageSpec* image) { return *image->split == split; };
+    if (std::none_of(images.begin(), images.end(), is_made) &&
+        std::none_of(pending.begin(), pending.end(), is_to_come))
       add_example(empty, split);
   };
   look_at("train", by_chance || recipe.train_classes || by_table);
@@ -99,7 +104,7 @@ PixelCounts count_file(const std::filesystem::path& file, const std::string& kin
 
 std::vector<Concern> dataset_concerns(const Recipe& recipe, const std::vector<Concern>& planned,
                                       const std::vector<ImageFacts>& images,
-                                      const std::vector<ImageFacts>& pending) {
+                                      const std::vector<const ImageSpec*>& pending) {
   std::vector<Concern> concerns = no_concerns();
   for (const ImageFacts& image : images)
     look_at_image(concerns, image);

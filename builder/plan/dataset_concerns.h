@@ -26,7 +26,7 @@ struct ImageFacts {
 /// Plan::concerns. A class or split that an image of `pending` is of, which is to come, is not empty.
 std::vector<Concern> dataset_concerns(const Recipe& recipe, const std::vector<Concern>& planned,
                                       const std::vector<ImageFacts>& images,
-                                      const std::vector<ImageFacts>& pending = {});
+                                      const std::vector<const ImageSpec*>& pending = {});
 
 /// Counts the pixels of an image's files, read from the dataset's folder, where the dsbuild that
 /// made them did not, and keeps the counts in the database: once for each image. How many are

@@ -200,7 +200,7 @@ ImageRecord image_record(const PlannedImage& image, const Recipe& recipe, const 
 
 DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
                              const std::vector<ImageFacts>& images,
-                             const std::vector<ImageFacts>& pending) {
+                             const std::vector<const ImageSpec*>& pending) {
   DatasetRecord record;
   record.name = recipe.name;
   record.licence = recipe.licence;

@@ -32,6 +32,6 @@ ImageRecord image_record(const PlannedImage& image, const Recipe& recipe, const 
 /// What the manifest says of the dataset as a whole, for the images it lists; `pending` are to come.
 DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
                              const std::vector<ImageFacts>& images,
-                             const std::vector<ImageFacts>& pending = {});
+                             const std::vector<const ImageSpec*>& pending = {});
 
 }  // namespace ds
