@@ -8,9 +8,9 @@
 #include "tracer/base/temporary_file.h"
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fcntl.h>
-#include <stdio.h>
 #include <string_view>
 #include <system_error>
 

@@ -66,7 +66,7 @@ const MadeRecord::Row* MadeRecord::find(std::string_view use, Hash128 source) co
   return at == rows_.end() ? nullptr : &at->second;
 }
 
-void MadeRecord::add(std::string_view use, Hash128 source, Row row) {
+void MadeRecord::add(std::string_view use, Hash128 source, Row&& row) {
   rows_.try_emplace(std::pair{std::string(use), source}, std::move(row));
 }
 

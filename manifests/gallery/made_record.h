@@ -35,7 +35,7 @@ class MadeRecord {
   /// Null where nothing was made of it.
   const Row* find(std::string_view use, Hash128 source) const;
   /// The first of several of one use and source stays.
-  void add(std::string_view use, Hash128 source, Row row);
+  void add(std::string_view use, Hash128 source, Row&& row);
   std::string text() const;
 
  private:

@@ -12,7 +12,7 @@
 #include <string_view>
 
 namespace ds {
-extern const MeshFormat gltf_format;
+extern const MeshFormat k_gltf_format;
 }
 
 namespace {
@@ -47,12 +47,12 @@ void read_mtl(std::string_view text) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   try {
-    if (ds::gltf_format.matches(bytes, "/nonexistent/fuzz.gltf")) {
-      const ds::OwnMaterials own = ds::gltf_format.materials(bytes, "/nonexistent/fuzz.gltf");
+    if (ds::k_gltf_format.matches(bytes, "/nonexistent/fuzz.gltf")) {
+      const ds::OwnMaterials own = ds::k_gltf_format.materials(bytes, "/nonexistent/fuzz.gltf");
       check(own);
       for (const ds::OwnImage& image : own.images)
         if (image.embedded >= 0)
-          ds::gltf_format.embedded_image(bytes, "/nonexistent/fuzz.gltf", image.embedded);
+          ds::k_gltf_format.embedded_image(bytes, "/nonexistent/fuzz.gltf", image.embedded);
     } else {
       read_mtl(bytes);
     }

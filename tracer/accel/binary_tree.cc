@@ -136,7 +136,7 @@ constexpr unsigned k_most_levels = 128;
 /// One for all builds and threads, and to the end of the process: making it takes as long as a
 /// small tree.
 RTCDevice shared_device() {
-  static const RTCDevice device = rtcNewDevice("");
+  static RTCDeviceTy* const device = rtcNewDevice("");
   if (device == nullptr) fail(ErrorKind::device, "embree: no device can be made");
   return device;
 }

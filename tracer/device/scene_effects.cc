@@ -57,7 +57,7 @@ std::vector<int> chooser_depths(const Scene& scene) {
   return depths;
 }
 
-void add_materials(const Scene& scene, SceneEffects& f) {
+void add_materials(const Scene& scene, SceneEffects& effects) {
   const std::vector<int> depths = chooser_depths(scene);
   const std::vector<bool> used = used_materials(scene);
   std::vector<bool> present(material_types().size(), false);
@@ -67,16 +67,16 @@ void add_materials(const Scene& scene, SceneEffects& f) {
     const Material& material = scene.materials[i];
     const NodeType& type = material_types()[static_cast<std::size_t>(material.type)];
     present[static_cast<std::size_t>(material.type)] = true;
-    f.material_inputs = std::max(f.material_inputs, input_floats(type));
-    f.chooser_depth = std::max(f.chooser_depth, depths[i]);
+    effects.material_inputs = std::max(effects.material_inputs, input_floats(type));
+    effects.chooser_depth = std::max(effects.chooser_depth, depths[i]);
     const TextureCode code = texture_code(scene, material);
     for (const int texture : code.types)
       textures[static_cast<std::size_t>(texture)] = true;
-    f.texture_stack = std::max(f.texture_stack, code.stack);
+    effects.texture_stack = std::max(effects.texture_stack, code.stack);
   }
-  f.materials = prefixes(material_types(), present);
-  f.choosers = prefixes(material_types(), present, true);
-  f.textures = prefixes(texture_types(), textures);
+  effects.materials = prefixes(material_types(), present);
+  effects.choosers = prefixes(material_types(), present, true);
+  effects.textures = prefixes(texture_types(), textures);
 }
 
 /// Whether the model shows a material that casts caustics, itself or as a part.
@@ -90,12 +90,13 @@ bool model_casts_caustics(const Scene& scene) {
   });
 }
 
-void add_light(const LightType& type, SceneEffects& f) {
-  f.lights.emplace_back(type.kernel_prefix);
-  if (has_trait(type, kernels::k_trait_beyond)) f.escape_lights.emplace_back(type.kernel_prefix);
+void add_light(const LightType& type, SceneEffects& effects) {
+  effects.lights.emplace_back(type.kernel_prefix);
+  if (has_trait(type, kernels::k_trait_beyond))
+    effects.escape_lights.emplace_back(type.kernel_prefix);
 }
 
-void add_lights(const Scene& scene, SceneEffects& f) {
+void add_lights(const Scene& scene, SceneEffects& effects) {
   std::set<std::string_view> names;
   for (const Light& light : scene.lights)
     if (shines(light)) names.insert(type_of(light).kernel_prefix);
@@ -103,25 +104,25 @@ void add_lights(const Scene& scene, SceneEffects& f) {
     if (object.material >= 0 && shines(scene.materials[static_cast<std::size_t>(object.material)]))
       names.insert("mesh");
   for (const LightType& type : light_types())
-    if (names.contains(type.kernel_prefix)) add_light(type, f);
+    if (names.contains(type.kernel_prefix)) add_light(type, effects);
 }
 
 /// Whether a material of the program, or a chooser, has the trait.
-bool any_material(const SceneEffects& f, unsigned trait) {
+bool any_material(const SceneEffects& effects, unsigned trait) {
   return std::any_of(material_types().begin(), material_types().end(), [&](const NodeType& type) {
-    return has_trait(type, trait) && f.has_material(type.kernel_prefix);
+    return has_trait(type, trait) && effects.has_material(type.kernel_prefix);
   });
 }
 
-bool any_light(const SceneEffects& f, unsigned trait) {
-  return std::any_of(f.lights.begin(), f.lights.end(),
+bool any_light(const SceneEffects& effects, unsigned trait) {
+  return std::any_of(effects.lights.begin(), effects.lights.end(),
                      [&](const std::string& name) { return has_trait(light_type(name), trait); });
 }
 
 }  // namespace
 
-bool samples_lights(const SceneEffects& f) {
-  return any_light(f, kernels::k_trait_sampled);
+bool samples_lights(const SceneEffects& effects) {
+  return any_light(effects, kernels::k_trait_sampled);
 }
 
 std::vector<bool> materials_with(const Scene& scene, unsigned traits) {
@@ -155,31 +156,32 @@ bool SceneEffects::has_material(std::string_view prefix) const {
 }
 
 SceneEffects scene_effects(const Scene& scene, const Camera& camera) {
-  SceneEffects f;
-  add_materials(scene, f);
-  add_lights(scene, f);
-  f.lens = camera.lens_radius_m > 0;
-  f.camera_invisible = std::any_of(scene.objects.begin(), scene.objects.end(),
-                                   [](const Object& object) { return object.camera_invisible; });
-  f.lobe_choice = any_material(f, kernels::k_trait_lobes);
-  f.guide = any_light(f, kernels::k_trait_small) && model_casts_caustics(scene) &&
-            any_material(f, kernels::k_trait_receives_caustics);
-  return f;
+  SceneEffects effects;
+  add_materials(scene, effects);
+  add_lights(scene, effects);
+  effects.lens = camera.lens_radius_m > 0;
+  effects.camera_invisible =
+      std::any_of(scene.objects.begin(), scene.objects.end(),
+                  [](const Object& object) { return object.camera_invisible; });
+  effects.lobe_choice = any_material(effects, kernels::k_trait_lobes);
+  effects.guide = any_light(effects, kernels::k_trait_small) && model_casts_caustics(scene) &&
+                  any_material(effects, kernels::k_trait_receives_caustics);
+  return effects;
 }
 
 SceneEffects all_effects() {
-  SceneEffects f;
+  SceneEffects effects;
   for (const NodeType& type : material_types()) {
-    (type.children > 0 ? f.choosers : f.materials).emplace_back(type.kernel_prefix);
-    f.material_inputs = std::max(f.material_inputs, input_floats(type));
+    (type.children > 0 ? effects.choosers : effects.materials).emplace_back(type.kernel_prefix);
+    effects.material_inputs = std::max(effects.material_inputs, input_floats(type));
   }
   for (const NodeType& type : texture_types())
-    f.textures.emplace_back(type.kernel_prefix);
+    effects.textures.emplace_back(type.kernel_prefix);
   for (const LightType& type : light_types())
-    add_light(type, f);
-  f.lens = f.camera_invisible = f.lobe_choice = f.guide = true;
-  f.texture_stack = k_texture_stack_limit;
-  return f;
+    add_light(type, effects);
+  effects.lens = effects.camera_invisible = effects.lobe_choice = effects.guide = true;
+  effects.texture_stack = k_texture_stack_limit;
+  return effects;
 }
 
 SceneEffects full_effects(const SceneEffects& own) {

@@ -70,12 +70,13 @@ Film blurred(const Film& film, const std::vector<double>& weights, bool down) {
   const int radius = static_cast<int>(weights.size() / 2);
   for_each_pixel(to, [&](int x, int y, float* rgb) {
     std::array<double, 3> sum{};
-    for (int i = -radius; i <= radius; ++i) {
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      const int i = static_cast<int>(k) - radius;
       const int from_x = down ? x : std::clamp(x + i, 0, film.width - 1);
       const int from_y = down ? std::clamp(y + i, 0, film.height - 1) : y;
       const float* from = film.rgb.data() + at(film, from_x, from_y);
       for (std::size_t c = 0; c < 3; ++c)
-        sum[c] += weights[static_cast<std::size_t>(i + radius)] * double{from[c]};
+        sum[c] += weights[k] * double{from[c]};
     }
     for (std::size_t c = 0; c < 3; ++c)
       rgb[c] = static_cast<float>(sum[c]);

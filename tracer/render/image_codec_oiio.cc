@@ -225,7 +225,7 @@ DecodedImage decode_bytes(std::span<const std::byte> bytes, const std::string& f
   });
 }
 
-std::vector<std::byte> png_of(int width, int height, int channels, OIIO::TypeDesc type,
+std::vector<std::byte> png_of(int width, int height, int channels, const OIIO::TypeDesc& type,
                               std::span<const std::byte> pixels) {
   DS_ASSERT(channels == 1 || channels == 3);
   OIIO::ImageSpec spec(width, height, channels, type);

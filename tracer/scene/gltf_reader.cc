@@ -479,8 +479,8 @@ std::string read_image(std::string_view bytes, const std::string& name, int numb
 
 }  // namespace
 
-extern const MeshFormat gltf_format;
-const MeshFormat gltf_format{
+extern const MeshFormat k_gltf_format;
+const MeshFormat k_gltf_format{
     "glTF",
     ".gltf .glb",
     "normals, uvs (TEXCOORD_0) and colours (COLOR_0) of vertices, materials; nodes' transforms are "

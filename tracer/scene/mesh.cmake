@@ -1,10 +1,11 @@
 # Mesh formats, in the order in which they are asked whether a file is theirs: each is a NAME_reader.cc with a
-# NAME_format (mesh_formats.h).
+# k_NAME_format (mesh_formats.h).
 set(mesh_formats ply off stl obj gltf)
 
 set_property(GLOBAL PROPERTY ds_mesh_formats ${mesh_formats})
 list(TRANSFORM mesh_formats APPEND _reader.cc OUTPUT_VARIABLE mesh_readers)
 list(TRANSFORM mesh_formats APPEND _format OUTPUT_VARIABLE mesh_format_names)
+list(TRANSFORM mesh_format_names PREPEND k_)
 list(JOIN mesh_format_names "," mesh_format_names)
 set_source_files_properties(mesh_formats.cc PROPERTIES COMPILE_DEFINITIONS "DS_MESH_FORMATS=${mesh_format_names}")
 

@@ -10,7 +10,7 @@
 
 namespace ds {
 
-// The list in mesh.cmake: ply_format, off_format, ...
+// The list in mesh.cmake: k_ply_format, k_off_format, ...
 extern const MeshFormat DS_MESH_FORMATS;
 
 namespace {

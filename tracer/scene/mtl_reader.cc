@@ -49,7 +49,7 @@ fs::path resolved(std::string_view written, const fs::path& folder) {
     text = text.substr(1, text.size() - 2);
   std::replace(text.begin(), text.end(), '\\', '/');
   const bool drive = text.size() > 1 && text[1] == ':';
-  const fs::path path(text);
+  fs::path path(text);
   if (!drive && !path.is_absolute()) return (folder / path).lexically_normal();
   std::error_code error;
   if (!drive && fs::is_regular_file(path, error)) return path;

@@ -288,15 +288,16 @@ OwnMaterials obj_materials(std::string_view bytes, const std::string& name) {
 
 }  // namespace
 
-extern const MeshFormat obj_format;
-const MeshFormat obj_format{"OBJ",
-                            ".obj",
-                            "uvs and normals of corners, colours of vertices behind their places; "
-                            "materials (usemtl) of .mtl files",
-                            is_obj,
-                            read_obj,
-                            nullptr,
-                            obj_materials,
-                            obj_libraries};
+extern const MeshFormat k_obj_format;
+const MeshFormat k_obj_format{
+    "OBJ",
+    ".obj",
+    "uvs and normals of corners, colours of vertices behind their places; "
+    "materials (usemtl) of .mtl files",
+    is_obj,
+    read_obj,
+    nullptr,
+    obj_materials,
+    obj_libraries};
 
 }  // namespace ds

@@ -266,8 +266,8 @@ Polygons read_off(std::string_view bytes, const std::string& name) {
 
 }  // namespace
 
-extern const MeshFormat off_format;
-const MeshFormat off_format{
+extern const MeshFormat k_off_format;
+const MeshFormat k_off_format{
     "OFF", ".off", "normals, uvs and colours of vertices, colours of faces",
     [](std::string_view bytes, const std::string&) { return is_off(bytes); }, read_off};
 

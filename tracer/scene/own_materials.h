@@ -107,7 +107,7 @@ std::string embedded_image(const std::filesystem::path& model, int number);
 
 /// As text and back, for what is kept of a file that was read. Throws Error(io) for what own_materials_text did not
 /// make.
-std::string own_materials_text(const OwnMaterials& materials);
+std::string own_materials_text(const OwnMaterials& own);
 OwnMaterials own_materials_from_text(std::string_view text);
 
 /// As a scene of images, textures and materials for `compose`: number n with the id n, and behind all, where triangles

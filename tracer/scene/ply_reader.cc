@@ -264,8 +264,8 @@ Polygons read_ply(std::string_view bytes, const std::string& name) {
 
 }  // namespace
 
-extern const MeshFormat ply_format;
-const MeshFormat ply_format{
+extern const MeshFormat k_ply_format;
+const MeshFormat k_ply_format{
     "PLY", ".ply",
     "normals, uvs and colours of vertices, uvs of corners, colours of faces, strips of triangles",
     [](std::string_view bytes, const std::string&) { return is_ply(bytes); }, read_ply};

@@ -190,8 +190,8 @@ Polygons read_stl(std::string_view bytes, const std::string& name) {
 
 }  // namespace
 
-extern const MeshFormat stl_format;
-const MeshFormat stl_format{"STL", ".stl", "nothing: corners of one place become one vertex",
-                            is_stl, read_stl};
+extern const MeshFormat k_stl_format;
+const MeshFormat k_stl_format{"STL", ".stl", "nothing: corners of one place become one vertex",
+                              is_stl, read_stl};
 
 }  // namespace ds
