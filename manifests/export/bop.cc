@@ -368,7 +368,7 @@ void Bop::add(const ExportImage& image) {
   const auto world = world_to_camera(record.camera_to_world);
   json gt = json::array(), info = json::array();
   std::map<std::uint64_t, std::uint64_t> targets;  // instances by object
-  for (ShownObject& shown : shown_objects(input_, image)) {
+  for (ListedObject& shown : shown_objects(input_, image)) {
     const bool is_model = shown.record == nullptr;
     const BopObject& object = is_model ? model_of(record) : other_of(*shown.record);
     const ModelPose& pose = is_model ? *record.pose : shown.record->pose;

@@ -39,11 +39,11 @@ class Coco : public Exporter {
                           {"height", record.height},
                           {"license", 1},
                           {"dsbuild_id", record.id}});
-    for (const ShownObject& object : shown_objects(input_, image))
+    for (const ListedObject& object : shown_objects(input_, image))
       annotate(parts, object);
   }
 
-  void annotate(Parts& parts, const ShownObject& object) {
+  void annotate(Parts& parts, const ListedObject& object) {
     const MaskPixels& mask = object.mask;
     const auto box = tight_box(mask);
     if (!box) {

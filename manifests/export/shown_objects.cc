@@ -47,8 +47,8 @@ MaskPixels mask_of_id(const std::vector<std::uint32_t>& ids, std::uint32_t id, i
   return mask;
 }
 
-std::vector<ShownObject> shown_objects(const ExportInput& input, const ExportImage& image) {
-  std::vector<ShownObject> objects;
+std::vector<ListedObject> shown_objects(const ExportInput& input, const ExportImage& image) {
+  std::vector<ListedObject> objects;
   objects.push_back({nullptr, image.label, read_mask(input, image)});
   if (image.record.objects.empty()) return objects;
   const std::vector<std::uint32_t> ids = read_ids(input, image);

@@ -9,7 +9,7 @@
 namespace ds {
 
 /// A thing that an image shows, and where.
-struct ShownObject {
+struct ListedObject {
   const ObjectRecord* record = nullptr;  ///< of a thing beside the model; none: the model
   int label = 0;                         ///< of ExportInput::classes; -1 where it has no class
   MaskPixels mask;
@@ -17,7 +17,7 @@ struct ShownObject {
 
 /// The model, and behind it the others by id. Error(asset) where the image has others and no plane
 /// object_id, whose file tells them apart.
-std::vector<ShownObject> shown_objects(const ExportInput& input, const ExportImage& image);
+std::vector<ListedObject> shown_objects(const ExportInput& input, const ExportImage& image);
 
 /// The ids of the plane object_id, row by row from the top.
 std::vector<std::uint32_t> read_ids(const ExportInput& input, const ExportImage& image);

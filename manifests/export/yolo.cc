@@ -26,7 +26,7 @@ void Yolo::add(const ExportImage& image) {
   to_.place(file_of(image, "image"), fmt::format("images/{}/{}{}", image.split, image.key,
                                                  ending_of(file_of(image, "image"))));
   std::string lines;
-  for (const ShownObject& object : shown_objects(input_, image)) {
+  for (const ListedObject& object : shown_objects(input_, image)) {
     if (object.label < 0)
       to_.note("distractors without a class have no label");
     else if (tight_box(object.mask))

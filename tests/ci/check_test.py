@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """ci/check refuses what it is there to refuse: a wrong include planted in each layer, each forbidden word of kernels,
-a file that is not formatted, a folder of no layer.
+a file that is not formatted, a folder of no layer, a name with two definitions.
 
 Usage: check_test.py SOURCE_DIR
 """
@@ -24,7 +24,7 @@ class Tree:
 
     def __init__(self, root: pathlib.Path):
         self.root = root
-        for name in ("check", "check_layers.py", "lint_kernels.sh", "format"):
+        for name in ("check", "check_layers.py", "check_names.py", "lint_kernels.sh", "format"):
             self.put(f"ci/{name}", (SOURCE / "ci" / name).read_text(encoding="utf-8"))
             shutil.copymode(SOURCE / "ci" / name, root / "ci" / name)
         shutil.copy(SOURCE / ".clang-format", root)
@@ -87,6 +87,20 @@ class Check(unittest.TestCase):
 
     def test_refuses_what_is_not_formatted(self):
         self.refuses("tracer/base/own.h", "int  f( );\n", "own.h")
+
+    def test_refuses_names_with_two_definitions(self):
+        self.tree.put("tracer/base/own.h", "#pragma once\n\nnamespace ds {\n\nstruct Row {\n  int a;\n};\n\n"
+                                           "inline int twice(int a) {\n  return 2 * a;\n}\n\n}  // namespace ds\n")
+        of_its_file = "namespace {\n\nstruct Row {};\n\n}  // namespace\n\nstruct Other::Row {};\nstruct Row;\nRow one{};\n"
+        self.tree.put("tracer/scene/own.cc", f"namespace ds {{\n{of_its_file}\n}}  // namespace ds\n")
+        self.tree.put("tracer/scene/other.cc", "namespace other {\n\nstruct Row {};\n\n}  // namespace other\n")
+        code, output = self.tree.check()
+        self.assertEqual((code, output), (0, ""))
+        for text, name in (("struct Row {};", "ds::Row"), ("class Row final : public Base {};", "ds::Row"),
+                           ("template <typename T> struct Row {};", "ds::Row"), ("enum class Row { a };", "ds::Row"),
+                           ("inline int twice(int a) {\n  return a + a;\n}", "ds::twice(int a)")):
+            self.refuses("builder/plan/own.h", f"#pragma once\n\nnamespace ds {{\n\n{text}\n\n}}  // namespace ds\n",
+                         f"{name} is defined more than once: builder/plan/own.h:5, tracer/base/own.h:")
 
     def test_every_source_of_the_project_stands_in_a_layer(self):
         self.assertEqual(check_layers.faults(SOURCE), [])
