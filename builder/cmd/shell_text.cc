@@ -3,10 +3,10 @@
 
 #include "builder/cmd/command_line.h"
 #include "builder/cmd/help_text.h"
-#include "builder/cmd/shell_quoted.h"
 #include "manifests/check/check.h"
 #include "manifests/export/exporter.h"
 #include "tracer/base/error.h"
+#include "tracer/base/shell_quoted.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,6 @@
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/run_program.h"
 #include "builder/cmd/sbatch_options.h"
-#include "builder/cmd/shell_quoted.h"
 #include "builder/cmd/slurm_script.h"
 #include "builder/cmd/slurm_state.h"
 #include "builder/cmd/verbs.h"
@@ -12,6 +11,7 @@
 #include "tracer/base/files.h"
 #include "tracer/base/hash.h"
 #include "tracer/base/log.h"
+#include "tracer/base/shell_quoted.h"
 #include "tracer/base/streams.h"
 
 #include <fmt/chrono.h>

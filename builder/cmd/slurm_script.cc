@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/slurm_script.h"
 
-#include "builder/cmd/shell_quoted.h"
+#include "tracer/base/shell_quoted.h"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/progress.h"
-#include "builder/cmd/shell_quoted.h"
 #include "builder/cmd/slurm_state.h"
 #include "builder/cmd/verbs.h"
 #include "builder/plan/plan.h"
 #include "builder/store/build_ending.h"
+#include "tracer/base/shell_quoted.h"
 #include "tracer/base/streams.h"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/gathering.h"
 #include "builder/cmd/plan_text.h"
-#include "builder/cmd/shell_quoted.h"
 #include "builder/cmd/slurm_state.h"
 #include "builder/cmd/stop_signal.h"
 #include "builder/cmd/verbs.h"
@@ -13,6 +12,7 @@
 #include "tracer/base/error.h"
 #include "tracer/base/log.h"
 #include "tracer/base/nearest.h"
+#include "tracer/base/shell_quoted.h"
 #include "tracer/base/streams.h"
 
 #include <array>
