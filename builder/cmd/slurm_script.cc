@@ -42,11 +42,27 @@ std::string local_text(const std::string& local) {
                      rest.empty() ? "" : shell_quoted(rest));
 }
 
+constexpr const char* k_use_text =
+    R"(# It submits itself: bash FILE, or a pipe into bash. Its jobs are FILE shard (with SLURM_ARRAY_TASK_ID) and FILE last.
+set -euo pipefail
+
+# From a pipe: sbatch wants a file, of which it keeps a copy. What bash has not read yet is the rest of this text.
+if [ -z "${BASH_SOURCE[0]:-}" ]; then
+  file=$(mktemp -- "${TMPDIR:-/tmp}/dsbuild-slurm.XXXXXXXX")
+  trap 'rm -f -- "$file"' EXIT
+  { echo '#!/bin/bash'; cat; } >"$file"
+  bash "$file" "$@"
+  exit
+fi
+
+)";
+
 constexpr const char* k_submission_text = R"(
 # Without a word it submits itself and prints the ids of both jobs. Of a job that is requeued Slurm would otherwise
 # write the log anew. USR1 comes before the time limit, a minute or two (--signal=B:USR1@600 among the options: ten).
 if [ $# -eq 0 ]; then
   mkdir -p -- "$logs"
+  unset SBATCH_ARRAY_INX SBATCH_WAIT
   common=(--parsable --ntasks=1 --requeue --open-mode=append --signal=B:USR1@60)
   array=$(sbatch "${common[@]}" --job-name="$name" --array="$array" --output="$logs_pattern/%A-%a.log" \
     "${options[@]}" "$0" shard)
@@ -121,9 +137,10 @@ exit "$code"
 }  // namespace
 
 std::string slurm_script(const SlurmJob& job) {
-  std::string text = fmt::format(
-      "#!/bin/bash\n# {} by Slurm, in {} shares; written by dsbuild slurm.\nset -euo pipefail\n\n",
-      one_line(job.name), job.shards);
+  std::string text =
+      fmt::format("#!/bin/bash\n# {} by Slurm, in {} shares; written by dsbuild slurm.\n",
+                  one_line(job.name), job.shards);
+  text += k_use_text;
   const auto set = [&](const char* name, const std::string& value) {
     text += fmt::format("{}={}\n", name, value);
   };

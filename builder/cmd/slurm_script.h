@@ -23,8 +23,9 @@ struct SlurmJob {
   std::string local;
 };
 
-/// One bash script: run as it is it submits itself, the shards as a job array ("SCRIPT shard") and
-/// the job behind them ("SCRIPT last"), and prints both jobs' ids, a line each.
+/// One bash script: run as it is, as a file or from a pipe, it submits itself, the shards as a job
+/// array ("SCRIPT shard") and the job behind them ("SCRIPT last"), and prints both jobs' ids, a
+/// line each.
 std::string slurm_script(const SlurmJob& job);
 
 }  // namespace ds

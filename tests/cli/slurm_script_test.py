@@ -181,6 +181,24 @@ class SlurmScriptTest(TinyCase):
         calls = (self.fake / "calls").read_text()
         self.assertEqual(calls.count("--time=2:00:00 -p long "), 2)
 
+    def test_the_printed_script_may_be_piped(self):
+        script = self.slurm("--print", "--shards", "2").out
+        for piped in (["bash"], ["bash", "-s"]):
+            run = subprocess.run(piped, input=script, env=self.environment, cwd=self.folder, capture_output=True, text=True,
+                                 check=False)
+            self.assertEqual((run.returncode, run.stderr), (0, ""), run)
+            self.assertEqual(len(run.stdout.split()), 2, run)
+        self.assertEqual([one["traced"] > 0 for one in self.answers(101)], [True, True])
+        self.assert_as_on_one_machine()
+        self.assertEqual(list((self.folder / "local").glob("dsbuild*")), [])
+        # One of its jobs by hand, too.
+        run = subprocess.run(["bash", "-s", "shard"], input=script, env={**self.environment, "SLURM_ARRAY_TASK_ID": "1"},
+                             capture_output=True, text=True, check=True)
+        self.assertEqual(json.loads(run.stdout.splitlines()[-1])["traced"], 0)
+        (self.fake / "refuse").touch()
+        run = subprocess.run(["bash"], input=script, env=self.environment, capture_output=True, text=True, check=False)
+        self.assertEqual((run.returncode, run.stdout), (1, ""), run)
+
     def test_a_time_limit_that_is_near_ends_no_verification(self):
         script, fake = self.folder / "script.sh", self.folder / "dsbuild"
         fake.write_text("#!/bin/bash\n[ $1 != verify ] || { kill -USR1 $PPID; sleep 1; }\necho {}\n")
@@ -324,7 +342,11 @@ class SlurmScriptTest(TinyCase):
                             (["--arr=1"], "array"), (["--output=foo"], "output"), (["-o", "foo"], "output"),
                             (["--time", "1:00", "-d", "afterok:1"], "dependency"), (["--dependency=singleton"], "dependency"),
                             (["--parsable"], "parsable"), (["--wait"], "wait"), (["-W"], "wait"), (["--wrap=true"], "wrap"),
-                            (["--test-only"], "test-only"), (["--help"], "help"), (["-vV"], "version")):
+                            (["--test-only"], "test-only"), (["--help"], "help"), (["-vV"], "version"), (["--usage"], "usage"),
+                            (["--no-requeue"], "no-requeue"), (["--no-r"], "no-requeue"), (["-k"], "no-kill"), (["-Hk"], "no-kill"),
+                            (["--open-mode=truncate"], "open-mode"), (["--clusters=a"], "clusters"), (["-M", "a"], "clusters"),
+                            (["--nodes=2"], "nodes"), (["-N2"], "nodes"), (["-HN", "2"], "nodes"), (["--ntasks", "4"], "ntasks"),
+                            (["-n4"], "ntasks"), (["--ntasks-per-node=2"], "ntasks-per-node")):
             for also in ([], ["--print"]):
                 run = self.slurm(*also, "--", *words, code=2)
                 self.assertIn(f"slurm: sbatch's --{name} is not to be given, got ", run.err)
@@ -332,8 +354,14 @@ class SlurmScriptTest(TinyCase):
             self.assertIn("sbatch would run it in place of the script", self.slurm("--", *words, code=2).err)
         self.assertFalse((self.fake / "calls").exists())
         self.assertFalse(self.store.exists() or self.out.exists())
-        others = ["--wait-all-nodes=1", "-n4", "-p", "dear", "--exclude=a,o", "-Hp", "array", "--export=NONE"]
-        self.assertIn("--wait-all-nodes=1", self.slurm("--print", "--", *others).out)
+        self.assertIn("(dsbuild slurm --nodes N: shares made at once;", self.slurm("--", "--nodes=2", code=2).err)
+        for words in (["--signal=USR1@60"], ["--signal=B:TERM@60"], ["--signal", "R:USR1"], ["--sig=10"], ["--signal"]):
+            self.assertIn("slurm: sbatch's --signal must be B:USR1@SECONDS", self.slurm("--", *words, code=2).err)
+        self.assertFalse((self.fake / "calls").exists())
+        others = ["--wait-all-nodes=1", "-p", "dear", "--exclude=a,o", "-Hp", "array", "--export=NONE", "--nodelist=a", "-w", "b",
+                  "--requeue", "--kill-on-invalid-dep=yes", "--chdir=/", "-D", "/tmp", "--nodefile=f", "-c4", "--ni=3"]
+        for signal in (["--signal=B:USR1@600"], ["--signal", "B:SIGUSR1"], ["--sig=B:10@5"]):
+            self.assertIn("--wait-all-nodes=1", self.slurm("--print", "--", *others, *signal).out)
         run = self.run_it("slurm", self.tiny, env=self.environment)
         self.assertEqual((run.code, run.err), (2, f"dsbuild: error: slurm: wanted a recipe, found the folder {self.tiny}\n"))
 
