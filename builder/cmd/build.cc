@@ -204,8 +204,9 @@ int run_build(const Arguments& arguments) {
   expect_signs_of_life(arguments.stall_seconds);
   check_options(arguments);
   const Wanted wanted = arguments.no_files ? Wanted::store : Wanted::files;
-  const BuildOptions build_options{arguments.keep_going, arguments.force, arguments.copy, wanted,
-                                   earlier_processes()};
+  const EarlierProcesses earlier = earlier_processes();
+  const BuildOptions build_options{
+      arguments.keep_going, arguments.force, arguments.copy, wanted, earlier, earlier.began};
   // What the command is for lies in files: a reader of its text who goes away does not end it.
   if (!arguments.dry_run) std::signal(SIGPIPE, SIG_IGN);
   const Shard shard = shard_of(arguments);

@@ -239,10 +239,12 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
       verb.add_flag("--force", to.force, "trace every image again");
       return;
     case Option::stall:
-      add_number(verb, "--stall", to.stall_seconds, {.least = 0, .most = 1e9},
-                 "seconds without a sign of life after which what builds is ended, and the image "
-                 "it was at "
-                 "tried once more, as where the device crashed; 0: never [900]");
+      add_number(
+          verb, "--stall", to.stall_seconds, {.least = 0, .most = 1e9},
+          "seconds without a sign of life (an image begun, ended, or some of its samples "
+          "traced; outside of images also any computing) after which what builds is ended, "
+          "and the image it was at tried once more, as where the device crashed; at least 5, "
+          "more than the longest step takes; 0: never [900]");
       return;
     case Option::rehash:
       verb.add_flag("--rehash", to.rehash,

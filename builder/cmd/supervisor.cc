@@ -3,6 +3,7 @@
 
 #include "builder/cmd/arguments.h"
 #include "builder/cmd/stop_signal.h"
+#include "tracer/base/error.h"
 #include "tracer/base/streams.h"
 
 #include <fmt/format.h>
@@ -26,7 +27,7 @@ namespace {
 
 /// More processes in a row that die without an image made are no image's fault.
 constexpr int k_most_in_vain = 10;
-/// Processes in a row that hang outside of images, before the build is given up.
+/// Processes in a row that hang or die outside of images, before the build is given up.
 constexpr int k_most_idle = 2;
 
 /// Memory that both processes see. Only the one that builds writes, while it lives.
@@ -182,10 +183,10 @@ int blame(const std::string& id, const std::string& how) {
 /// Processes in a row that came to nothing.
 struct InVain {
   int crashed = 0;  ///< with an image, and made none
-  int idle = 0;     ///< hung before their first image, or behind their last
+  int idle = 0;     ///< hung or died before their first image, or behind their last
 };
 
-/// What follows on a process that hung outside of its images.
+/// What follows on a process that hung or died outside of its images.
 std::optional<int> after_idling(const Death& death, InVain& in_vain) {
   const bool again = ++in_vain.idle < k_most_idle;
   say(Stream::people, "dsbuild: {}: the process that builds {} {}{}\n", again ? "warning" : "error",
@@ -205,11 +206,7 @@ std::optional<int> after(const Watch& watch, const Death& death, InVain& in_vain
   if (watch.told != 0 || is_stop(death.signal) || out_of_time) return end_as(death);
   if (::isatty(STDERR_FILENO) == 1) say(Stream::people, "\n");  // behind the line that moved
   if (g_shared->built > 0) in_vain = {};
-  if (!g_shared->in_image && watch.hung) return after_idling(death, in_vain);
-  if (!g_shared->in_image) {
-    say(Stream::people, "dsbuild: error: the process that builds {}\n", death.how);
-    return end_as(death);
-  }
+  if (!g_shared->in_image) return after_idling(death, in_vain);
   add_up();
   if (g_shared->built == 0) ++in_vain.crashed;
   const bool again = blame(id, death.how) < k_most_crashes;
@@ -233,6 +230,7 @@ std::optional<int> watch_over_build() {
   sigset_t before;
   ::pthread_sigmask(SIG_BLOCK, &signals, &before);
   const pid_t watching = ::getpid();
+  g_earlier.began = std::chrono::steady_clock::now();
   double hang_seconds = Arguments{}.stall_seconds;
   for (InVain in_vain;;) {
     g_shared = new (memory) WatchedState{};
@@ -262,6 +260,12 @@ EarlierProcesses earlier_processes() {
 }
 
 void expect_signs_of_life(double hang_seconds) {
+  if (hang_seconds != 0 && hang_seconds < k_least_stall_seconds)
+    fail(
+        ErrorKind::usage,
+        "build --stall: wanted at least {} seconds, or 0 for never, got {}: compiling a program or "
+        "reading a large model takes seconds without a sign of life",
+        k_least_stall_seconds, hang_seconds);
   if (g_shared != nullptr) g_shared->hang_seconds = hang_seconds;
 }
 

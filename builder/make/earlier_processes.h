@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -26,6 +27,8 @@ struct EarlierProcesses {
   std::uint64_t to_make = 0;  ///< images, when the first began
   /// Of what they made, as far as they came to tell.
   std::uint64_t traced = 0, developed = 0, samples = 0;
+  /// When the first one began; else this one.
+  std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
 
   /// Nothing where none died at the image.
   const CrashedImage* crash_of(std::string_view id) const;

@@ -40,11 +40,11 @@ struct BuildResult {
   std::uint64_t developed = 0;       ///< of the built: a picture was made from a film
   std::uint64_t traced_samples = 0;  ///< camera samples, over all pixels
   std::uint64_t deaths = 0;          ///< processes that died on the way
-  ProgramCounts programs;
-  double seconds = 0;        ///< of all of it, planning too
-  std::string device;        ///< empty where nothing was traced
-  bool stopped = false;      ///< by the user
-  bool disk_failed = false;  ///< the disk took nothing more: full, read only or broken
+  ProgramCounts programs;            ///< of the last process
+  double seconds = 0;                ///< of all of it, planning and processes that died, too
+  std::string device;                ///< empty where nothing was traced
+  bool stopped = false;              ///< by the user
+  bool disk_failed = false;          ///< the disk took nothing more: full, read only or broken
   /// What ("human.ply/0", "14 images, ..."), why.
   std::vector<std::pair<std::string, std::string>> failures;
   std::vector<Concern> concerns;  ///< of all images that the manifest lists

@@ -72,10 +72,16 @@ class SupervisorTest(TinyCase):
         whole = self.folder / "whole"
         self.build(out=whole)
         for how in ("segv", "hang"):
+            begin = time.monotonic()
             run = self.run_it("build", self.recipe, "-o", self.out, "--stall", str(STALL), "--json",
                               env=self.environment(how, once=True))
             self.assertEqual(run.code, 0, run)
             self.assert_counts(run.json, built=IMAGES + VIEWS, reused=0, failed=0, deaths=1)
+            # Of both processes.
+            seconds = self.run_it("log", self.out, "--json").json["builds"][0]["seconds"]
+            self.assertAlmostEqual(run.json["seconds"], seconds, places=3)
+            self.assertGreaterEqual(seconds, STALL if how == "hang" else 0)
+            self.assertLessEqual(seconds, time.monotonic() - begin)
             self.assertEqual(self.contents(), self.contents(whole))
             subprocess.run(["rm", "-rf", str(self.out), str(self.folder / "once")], check=True)
 
@@ -88,7 +94,15 @@ class SupervisorTest(TinyCase):
                          f"the process that made it showed no sign of life for {STALL} s, 2 times")
         self.assertEqual(self.run_it("build", self.recipe, "--stall", "-1").code, 2)
 
-    def stop_builders(self, process, times):
+    def test_less_than_healthy_images_take_is_refused(self):
+        for seconds in ("0.01", "4.9"):
+            run = self.run_it("build", self.recipe, "-o", self.out, "--stall", seconds)
+            self.assertEqual((run.code, len(run.err.splitlines())), (2, 1), run)
+            self.assertIn(f"build --stall: wanted at least 5 seconds, or 0 for never, got {seconds}: ", run.err)
+        self.assertFalse(self.out.exists())
+        self.assertEqual(self.run_it("build", self.recipe, "-o", self.out, "--stall", "0", "-n").code, 0)
+
+    def stop_builders(self, process, times, by=signal.SIGSTOP):
         """Stops, one after another, the processes that build before their first image; how many came to be."""
         state, seen = self.out / ".dsbuild/dsbuild.sqlite", set()
         end = time.monotonic() + 120
@@ -96,7 +110,7 @@ class SupervisorTest(TinyCase):
             children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
             for child in map(int, children):
                 if child not in seen and len(seen) < times and state.exists():
-                    os.kill(child, signal.SIGSTOP)
+                    os.kill(child, by)
                     seen.add(child)
             time.sleep(0.001)
         return len(seen)
@@ -113,8 +127,26 @@ class SupervisorTest(TinyCase):
                       err)
         self.assertEqual(self.run_it("verify", self.out).code, 0)
 
+    def test_a_process_that_is_killed_before_its_first_image_is_begun_again_once(self):
+        (self.tiny / "models/large.off").unlink()
+        told = "the process that builds died of signal 9 (Killed) before its first image"
+        process = self.start("build", self.recipe, "-o", self.out, "--json")
+        self.addCleanup(process.kill)
+        self.assertEqual(self.stop_builders(process, 1, signal.SIGKILL), 1)
+        out, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0, err)
+        self.assert_counts(json.loads(out), built=IMAGES, reused=0, failed=0, deaths=1)
+        self.assertIn(f"dsbuild: warning: {told}; another one goes on\n", err)
+        self.assertEqual(self.run_it("verify", self.out).code, 0)
+        process = self.start("build", self.recipe, "-o", self.out, "--force")
+        self.addCleanup(process.kill)
+        self.assertEqual(self.stop_builders(process, 2, signal.SIGKILL), 2)
+        err = process.communicate(timeout=60)[1]
+        self.assertEqual(process.returncode, -signal.SIGKILL, err)
+        self.assertIn(f"dsbuild: error: {told}, again\n", err)
+
     def test_a_process_that_always_stops_before_its_first_image_is_given_up(self):
-        process = self.start("build", self.recipe, "-o", self.out, "--stall", "1")
+        process = self.start("build", self.recipe, "-o", self.out, "--stall", str(STALL))
         self.addCleanup(process.kill)
         # The second is stopped as soon as it is there, before it can say what --stall was.
         state = self.out / ".dsbuild/dsbuild.sqlite"
@@ -122,18 +154,18 @@ class SupervisorTest(TinyCase):
         _, err = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 1, err)
         self.assertTrue(state.exists())
-        self.assertIn("error: the process that builds showed no sign of life for 1 s before its first image, again", err)
+        self.assertIn(f"error: the process that builds showed no sign of life for {STALL} s before its first image, again", err)
 
     def test_waiting_for_others_is_no_hang(self):
         state = self.out / ".dsbuild"
         state.mkdir(parents=True)
         with open(state / "lock", "w", encoding="utf-8") as lock:  # as store gc holds it
             fcntl.lockf(lock, fcntl.LOCK_EX, 1)
-            process = self.start("build", self.recipe, "-o", self.out, "--stall", "2")
+            process = self.start("build", self.recipe, "-o", self.out, "--stall", str(STALL))
             self.addCleanup(process.kill)
             time.sleep(2)
             waiting = sorted(self.others())
-            time.sleep(6)
+            time.sleep(STALL + 3)
             self.assertEqual(sorted(self.others()), waiting)
             self.assertIsNone(process.poll())
             process.send_signal(signal.SIGTERM)
