@@ -156,7 +156,7 @@ int dry_run(const Arguments& arguments, const Recipe& recipe, const Plan& plan,
   else {
     say(Stream::result, "{}\n", summary(counts));
     print_manifest_line(plan);
-    print_edited(Stream::result, plan);
+    print_edited(plan);
   }
   return counts.failed > 0 ? 1 : 0;
 }
@@ -234,7 +234,7 @@ int run_build(const Arguments& arguments) {
   Inputs& inputs = *sole.inputs;
   const Plan& plan = sole.plan;
   warn_of_mended(plan);
-  print_edited(Stream::people, plan);
+  if (const std::string edited = edited_text(plan); !edited.empty()) warn(edited);
   const std::vector<Lacking> all_lacking = find_lacking(plan, inputs);
   for (const Lacking& lacking : all_lacking)
     warn(to_text(lacking));

@@ -190,7 +190,7 @@ int run_plan(const Arguments& arguments) {
     say(Stream::result, "{}\n", summary(counts));
     print_rejected(dataset.recipe, plan.drawn);
     print_manifest_line(plan);
-    print_edited(Stream::result, plan);
+    print_edited(plan);
   }
   bool answered = true;
   if (wish.any) {

@@ -57,15 +57,20 @@ void print_manifest_line(const Plan& plan) {
     say(Stream::result, "{}\n", line);
 }
 
-void print_edited(Stream to, const Plan& plan) {
+std::string edited_text(const Plan& plan) {
   constexpr std::size_t k_most_named = 3;
   const std::size_t count = plan.edited.size();
-  if (count == 0) return;
+  if (count == 0) return "";
   const auto end = plan.edited.begin() + static_cast<std::ptrdiff_t>(std::min(count, k_most_named));
-  say(to, "{} file{} changed after dsbuild made {}, and {} replaced or removed: {}{}\n", count,
-      count == 1 ? " was" : "s were", count == 1 ? "it" : "them", count == 1 ? "is" : "are",
-      fmt::join(plan.edited.begin(), end, ", "),
-      count > k_most_named ? fmt::format(" and {} more", count - k_most_named) : "");
+  return fmt::format("{} not as a build wrote {}, and {} replaced or removed: {}{}",
+                     count == 1 ? "1 file is" : fmt::format("{} files are", count),
+                     count == 1 ? "it" : "them", count == 1 ? "is" : "are",
+                     fmt::join(plan.edited.begin(), end, ", "),
+                     count > k_most_named ? fmt::format(" and {} more", count - k_most_named) : "");
+}
+
+void print_edited(const Plan& plan) {
+  if (const std::string line = edited_text(plan); !line.empty()) say(Stream::result, "{}\n", line);
 }
 
 nlohmann::json to_json(const ManifestState& manifest) {

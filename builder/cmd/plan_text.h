@@ -34,9 +34,11 @@ PlanCounts count(const Plan& plan);
 std::string manifest_line(const ManifestState& manifest);
 /// Prints that line where there is one.
 void print_manifest_line(const Plan& plan);
-/// Prints how many files a build replaces or removes that were changed since they were made, with a
-/// few of their names; nothing where there is none.
-void print_edited(Stream to, const Plan& plan);
+/// How many files a build replaces or removes that hold what no build wrote, with a few of their
+/// names; empty where there is none.
+std::string edited_text(const Plan& plan);
+/// Prints that line where there is one.
+void print_edited(const Plan& plan);
 /// {"behind": [...], "older_program": "0.1.0"}.
 nlohmann::json to_json(const ManifestState& manifest);
 

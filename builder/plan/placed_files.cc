@@ -100,16 +100,18 @@ std::optional<Hash128> PlacedFiles::bytes_in_place(const std::string& path) cons
   return content_hash(dataset_.folder / path);
 }
 
-bool PlacedFiles::is_edited(const std::string& path) const {
+PlacedFiles::Found PlacedFiles::find_there(const std::string& path) const {
   const Row* placed = find(path);
-  if (placed == nullptr) return false;
   try {
     const std::optional<Hash128> bytes = bytes_in_place(path);
-    if (!bytes || bytes == placed->object) return false;
-    // Bytes that the store holds are no one's work: a build placed them that did not come to note it.
-    return placed->of_manifest || !dataset_.store || !dataset_.store->has(*bytes);
+    if (!bytes) return Found::nothing;
+    if (placed != nullptr && bytes == placed->object) return Found::ours;
+    // A build may have placed what the store has, and not come to note it.
+    const bool of_manifest = placed != nullptr && placed->of_manifest;
+    return !of_manifest && dataset_.store && dataset_.store->has(*bytes) ? Found::ours
+                                                                         : Found::edited;
   } catch (const Error&) {
-    return false;
+    return Found::unreadable;
   }
 }
 

@@ -45,9 +45,14 @@ class PlacedFiles {
   /// Hash of the bytes of the file that is there now, whatever put them there; nothing where there
   /// is none. Reads it where its stamp is not the one remembered. Throws Error(io).
   std::optional<Hash128> bytes_in_place(const std::string& path) const;
-  /// Whether a build put the file there and it holds other bytes now, which the store does not have.
-  /// Not where that cannot be told.
-  bool is_edited(const std::string& path) const;
+  /// What lies where a file of the dataset is, or is to be.
+  enum class Found {
+    nothing,  ///< or no file
+    ours,     ///< what a build put there; or what the store has, so that nobody's work is in it
+    edited,   ///< bytes that no build is known to have written
+    unreadable,
+  };
+  Found find_there(const std::string& path) const;
   /// What the database knew of a file; null where nothing.
   const Row* find(std::string_view path) const;
   /// The files of the shard's images that are of none of these images, or of one whose picture is

@@ -206,15 +206,16 @@ void check_names(const std::vector<OutputFile>& outputs) {
 std::vector<std::string> edited_files(const Plan& plan) {
   std::vector<std::string> edited;
   const auto look = [&](const std::string& path) {
-    if (plan.placed->is_edited(path)) edited.push_back(path);
+    if (plan.placed->find_there(path) == PlacedFiles::Found::edited) edited.push_back(path);
   };
   for (const PlannedImage& image : plan.images)
     for (const PlannedFile& file : image.files)
       if (file.state != FileState::in_place) look(file.output.path);
   for (const std::string& path : plan.to_remove)
     look(path);
+  // Of a database that was lost, the manifest that stands is a build's all the same.
   for (const char* path : k_manifest_files)
-    look(path);
+    if (plan.placed->find(path) != nullptr) look(path);
   return edited;
 }
 

@@ -86,8 +86,8 @@ struct Plan {
   std::vector<std::string> to_remove;  ///< files dsbuild made, of the shard's images, that no image
                                        ///< names any more or whose picture is refused; relative to
                                        ///< the folder
-  /// Files of those that a build replaces or removes, the manifest's too, that were changed since a
-  /// build put them there.
+  /// Files of those that a build replaces or removes, the manifest's too, that hold what no build
+  /// is known to have written: they were changed, or put there, by hand.
   std::vector<std::string> edited;
   bool forgets = false;  ///< the database knows images that the recipe has no more
   PlanLabels labels;

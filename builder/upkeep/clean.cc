@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/upkeep/clean.h"
 
-#include "builder/db/file_stamp.h"
+#include "builder/plan/placed_files.h"
 #include "builder/store/folder_lock.h"
 #include "tracer/base/error.h"
-#include "tracer/base/hash_stream.h"
 
 #include <string>
 #include <system_error>
@@ -28,11 +27,6 @@ void remove_empty_folders(const fs::path& folder) {
     fs::remove(folders[i], error);
 }
 
-bool is_as_placed(const fs::path& file, const PlacedFile& placed) {
-  const std::optional<FileStamp> stamp = stamp_of(file);
-  return stamp && (stamp == placed.stamp || content_hash(file) == placed.object);
-}
-
 }  // namespace
 
 CleanResult clean_dataset(Dataset& dataset, Disk& disk, bool dry_run) {
@@ -42,6 +36,7 @@ CleanResult clean_dataset(Dataset& dataset, Disk& disk, bool dry_run) {
          dataset.folder.string(), *who);
   CleanResult result;
   std::vector<std::string> removed;
+  const PlacedFiles there(dataset);
   for (const auto& [path, placed] : dataset.database->placed_files(dataset.row.id)) {
     const fs::path file = dataset.folder / path;
     std::error_code error;
@@ -49,7 +44,7 @@ CleanResult clean_dataset(Dataset& dataset, Disk& disk, bool dry_run) {
       removed.push_back(path);
       continue;
     }
-    if (!is_as_placed(file, placed)) {
+    if (there.find_there(path) != PlacedFiles::Found::ours) {
       result.edited.push_back(file);
       continue;
     }

@@ -10,8 +10,9 @@
 namespace ds {
 
 struct CleanResult {
-  std::uint64_t files = 0, bytes = 0;         ///< removed, or that would be
-  std::vector<std::filesystem::path> edited;  ///< left: not as a build placed them
+  std::uint64_t files = 0, bytes = 0;  ///< removed, or that would be
+  std::vector<std::filesystem::path>
+      edited;  ///< left: not what a build wrote (PlacedFiles::find_there)
 };
 
 /// Takes a dataset's files and manifest out of its folder: those that a build placed and nobody

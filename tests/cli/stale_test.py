@@ -99,18 +99,18 @@ class StaleTest(TinyCase):
                 if settings == ["--force"] and verb == ["plan"]:
                     continue
                 run = self.run_it(*verb, self.recipe, *out, *settings)
-                self.assertIn(f"{count} files were changed after dsbuild made them, and are replaced or removed: ", run.out)
+                self.assertIn(f"{count} files are not as a build wrote them, and are replaced or removed: ", run.out)
                 self.assertIn("and 1 more", run.out)
                 told = self.run_it(*verb, self.recipe, *out, *settings, "--json").json["edited_files"]
                 self.assertEqual(told if verb != ["plan"] else len(told), count)
         self.assertEqual(set(self.run_it("plan", self.recipe, *out, "--json").json["edited_files"]), set(edited))
         run = self.run_it("build", self.recipe, *out, "--json")
-        self.assertIn("4 files were changed after dsbuild made them", run.err)
+        self.assertIn("dsbuild: warning: 4 files are not as a build wrote them, and are replaced or removed: ", run.err)
         self.assertEqual(run.json["edited_files"], 4)
         self.assertEqual(self.contents(), files)
         run = self.run_it("build", self.recipe, *out, "--json")
         self.assertEqual(run.json["edited_files"], 0)
-        self.assertNotIn("changed after", run.err)
+        self.assertNotIn("as a build wrote", run.err)
         # As after a build that was killed between placing a file and noting it: nobody's work is lost.
         self.build("--set", "engine.spp=2")
         newer = (self.out / "images/box.off/0.png").read_bytes()
@@ -118,6 +118,39 @@ class StaleTest(TinyCase):
         (self.out / "images/box.off/0.png").unlink()
         (self.out / "images/box.off/0.png").write_bytes(newer)
         self.assert_counts(self.build(), edited_files=0, built=1)
+
+    def replace(self, path, data):
+        (self.out / path).unlink(missing_ok=True)
+        (self.out / path).write_bytes(data)
+
+    def test_what_a_build_writes_over_is_what_clean_leaves(self):
+        self.build("--set", "camera.views=[0, 1]")
+        new = "images/box.off/3.png"  # of a view that the recipe is given now
+        self.replace(new, b"mine")
+        self.replace("images/box.off/0.png", b"mine, too")
+        left = self.run_it("clean", self.recipe, "-o", self.out, "--set", "camera.views=[0, 1]", "-n", "--json").json["edited"]
+        self.assertEqual(left, ["images/box.off/0.png"])
+        planned = self.run_it("plan", self.recipe, "-o", self.out, "--json").json["edited_files"]
+        self.assertEqual(planned, ["images/box.off/0.png", new])
+        run = self.run_it("build", self.recipe, "-o", self.out, "--json")
+        self.assertEqual(run.json["edited_files"], 2, run)
+        self.assertIn(f"warning: 2 files are not as a build wrote them, and are replaced or removed: images/box.off/0.png, {new}\n",
+                      run.err)
+        whole = self.contents()
+        # Where the database was lost, what it knew of files is lost with it; what the store has is nobody's work.
+        for file in (self.out / ".dsbuild").glob("dsbuild.sqlite*"):
+            file.unlink()
+        self.replace("images/box.off/2.mask.png", b"mine")
+        run = self.run_it("build", self.recipe, "-o", self.out, "--json")
+        self.assert_counts(run.json, edited_files=1, traced=0)
+        self.assertIn("1 file is not as a build wrote it, and is replaced or removed: images/box.off/2.mask.png\n", run.err)
+        self.assertEqual(self.contents(), whole)
+        # Nor is what a build placed and was killed before it noted that: clean takes it, too.
+        self.build("--set", "engine.spp=2")
+        other = (self.out / "images/box.off/0.png").read_bytes()
+        self.build()
+        self.replace("images/box.off/0.png", other)
+        self.assertEqual(self.run_it("clean", self.out, "--json").json["edited"], [])
 
     def test_rehash_reads_what_the_stamp_would_spare(self):
         self.build()
