@@ -11,6 +11,7 @@
 #include "builder/make/sole_plan.h"
 #include "builder/plan/lacking.h"
 #include "builder/store/guest.h"
+#include "builder/store/parts.h"
 #include "builder/store/store_database.h"
 #include "tracer/base/error.h"
 #include "tracer/base/log.h"
@@ -189,6 +190,18 @@ void remove_mark(const Dataset& dataset) {
   if (mark && mark->folder == dataset.folder) std::filesystem::remove(mark->file, ignored);
 }
 
+/// A store that may not be written to is enough where it has all.
+void check_can_keep(const Store& store, const Plan& plan) {
+  const auto makes = [](const PlannedImage& image) {
+    return std::any_of(image.files.begin(), image.files.end(),
+                       [](const PlannedFile& file) { return file.state == FileState::to_make; });
+  };
+  if (const auto count = std::count_if(plan.images.begin(), plan.images.end(), makes); count > 0)
+    refuse_read_only(store.folder(), fmt::format("of {} of {} images it has not all, and a build "
+                                                 "keeps there what it makes",
+                                                 count, plan.images.size()));
+}
+
 /// Where no lock in the store tells of this build. Jobs of Slurm have a mark for all of them.
 std::optional<Guest> enter_as_guest(const Arguments& arguments, const Dataset& dataset) {
   if (arguments.database_folder.empty() || find_slurm_mark(*dataset.store)) return std::nullopt;
@@ -224,7 +237,10 @@ int run_build(const Arguments& arguments) {
   };
   Dataset dataset = open_dataset(request, Access::build, disk);
   check_local(*dataset.store);
-  const std::optional<Guest> guest = enter_as_guest(arguments, dataset);
+  const bool read_only = is_read_only(dataset.store->folder());
+  const std::optional<Guest> guest = read_only ? std::nullopt : enter_as_guest(arguments, dataset);
+  // Jobs of Slurm have a mark for all of theirs.
+  if (request.in_passing && !read_only && !find_slurm_mark(*dataset.store)) note_parts(dataset);
   const auto waits_for = [&](const std::string& who) {
     say(Stream::people, "dsbuild: {}: waiting for another build that makes something else: {}\n",
         dataset.folder.string(), who);
@@ -233,6 +249,7 @@ int run_build(const Arguments& arguments) {
       make_sole_plan(dataset, stamps_of(arguments), arguments.force, shard, wanted, waits_for);
   Inputs& inputs = *sole.inputs;
   const Plan& plan = sole.plan;
+  check_can_keep(*dataset.store, plan);
   warn_of_mended(plan);
   if (const std::string edited = edited_text(plan); !edited.empty()) warn(edited);
   const std::vector<Lacking> all_lacking = find_lacking(plan, inputs);
@@ -262,9 +279,12 @@ int run_build(const Arguments& arguments) {
   if (result.stopped)
     say(Stream::people, "dsbuild: stopped; what is finished is recorded, build again to go on\n");
   const bool is_whole = arguments.shard.empty() && !arguments.no_files;
-  if (!arguments.database_folder.empty() && is_whole && !result.disk_failed)
-    put_database(*dataset.store, *dataset.database, arguments.database_folder, disk);
-  if (arguments.database_folder.empty() && is_whole && result.ok()) remove_mark(dataset);
+  if (is_whole && !read_only) {
+    if (!arguments.database_folder.empty() && !result.disk_failed)
+      put_database(*dataset.store, *dataset.database, arguments.database_folder, disk);
+    if (arguments.database_folder.empty() && result.ok()) remove_mark(dataset);
+    if (result.ok()) forget_parts(dataset);
+  }
   const std::size_t concerns = tell_concerns(result.concerns, dataset.recipe, arguments.strict);
   // Where it was stopped, what stands there of an earlier build was looked at.
   if (const std::uint64_t others = result.failed + result.not_reached;

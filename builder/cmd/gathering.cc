@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/gathering.h"
 
+#include "builder/cmd/named_store.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/slurm_state.h"
 #include "builder/cmd/stop_signal.h"
@@ -66,17 +67,9 @@ bool is_new(const fs::path& folder) {
 
 /// Of a folder that is a store, or is to become one.
 fs::path taking_store(const std::string& to, Disk& disk) {
-  std::error_code error;
   fs::path folder = fs::absolute(to).lexically_normal();
-  // First: who makes it makes one of the others next.
-  if (is_new(folder)) return folder;
-  for (const char* name : {"objects", "records", "slurm", "dsbuild.sqlite"})
-    if (fs::exists(folder / name, error)) return folder;
-  const Dataset dataset =
-      open_dataset({folder, {}, {}, {}, false}, Access::records, disk);  // says what is wrong else
-  if (dataset.store == nullptr)
-    fail(ErrorKind::usage, "store gather: wanted a store to take it, found {}", to);
-  return dataset.store->folder();
+  // First: who makes it makes what a store has next.
+  return is_new(folder) ? folder : named_store(folder.string(), "store gather", disk);
 }
 
 void check_two(const fs::path& from, const fs::path& to) {

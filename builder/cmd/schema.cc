@@ -15,10 +15,21 @@
 #include <vector>
 
 namespace ds {
+namespace {
+
+constexpr std::pair<std::string_view, nlohmann::json (*)()> k_schemas[] = {
+    {"recipe", recipe_schema}, {"images", image_schema}, {"dataset", dataset_schema}};
+
+}  // namespace
+
+std::vector<std::string> schema_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, schema] : k_schemas)
+    names.emplace_back(name);
+  return names;
+}
 
 int run_schema(const Arguments& arguments) {
-  static constexpr std::pair<std::string_view, nlohmann::json (*)()> k_schemas[] = {
-      {"recipe", recipe_schema}, {"images", image_schema}, {"dataset", dataset_schema}};
   std::vector<std::string_view> known;
   for (const auto& [name, schema] : k_schemas) {
     if (name == arguments.schema) {

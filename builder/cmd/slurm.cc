@@ -162,6 +162,7 @@ int run_slurm(const Arguments& arguments) {
   request.database_folder = own.path();
   request.local_folder.clear();  // that is the nodes'
   Dataset dataset = open_dataset(request, Access::build, disk);
+  refuse_read_only(dataset.store->folder(), "jobs keep there what they make");
   SlurmJob job = job_of(arguments, dataset);
   OwnMark mark(dataset, job);
   job.mark = mark.file();

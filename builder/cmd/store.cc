@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/gathering.h"
+#include "builder/cmd/named_store.h"
 #include "builder/cmd/plan_text.h"
 #include "builder/cmd/slurm_state.h"
 #include "builder/cmd/stop_signal.h"
@@ -7,8 +8,10 @@
 #include "builder/cmd/work_progress.h"
 #include "builder/forecast/budget.h"
 #include "builder/store/guest.h"
+#include "builder/store/parts.h"
 #include "builder/store/store_database.h"
 #include "builder/upkeep/collect.h"
+#include "builder/upkeep/restore.h"
 #include "tracer/base/error.h"
 #include "tracer/base/log.h"
 #include "tracer/base/nearest.h"
@@ -33,15 +36,7 @@ struct OpenStore {
 };
 
 fs::path store_folder_of(const Arguments& arguments, Disk& disk) {
-  std::error_code error;
-  fs::path target = arguments.target;
-  if (fs::exists(target / "dsbuild.sqlite", error) || fs::is_directory(target / "objects", error))
-    return target;
-  const Dataset dataset = open_dataset({target, {}, {}, {}, false}, Access::records, disk);
-  if (dataset.store == nullptr)
-    fail(ErrorKind::usage, "store: wanted a store or a dataset that has one, found {}",
-         target.string());
-  return dataset.store->folder();
+  return named_store(arguments.target, "store " + arguments.store_task, disk);
 }
 
 /// What the jobs made is of no dataset that the database knows before a build places it.
@@ -56,28 +51,56 @@ void refuse_gc(const SlurmMark& mark) {
        shell_quoted(mark.recipe.string()), mark.file.string());
 }
 
-/// `alone`: waits for whoever has the database open, and others wait then.
-OpenStore open_store(const Arguments& arguments, bool alone, Disk& disk) {
+/// What a store is opened for.
+enum class Opening {
+  look,      ///< beside whoever has it open
+  collect,   ///< alone: waits for whoever has the database open, and others wait then
+  forecast,  ///< as look, but refused where `collect` is, and what that would wait for is said
+};
+
+void wait_for_others(Claims& claims, const fs::path& folder) {
+  const std::atomic<bool>& stop = stop_on_signal();
+  for (bool told = false; !claims.try_own_database(); told = true) {
+    if (stop) fail(ErrorKind::cancelled, "stopped; nothing is removed");
+    if (!told) warn(fmt::format("{}: waits for what has the store open", folder.string()));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+}
+
+OpenStore open_store(const Arguments& arguments, Opening opening, Disk& disk) {
   const fs::path folder = store_folder_of(arguments, disk);
   OpenStore open{std::make_unique<Store>(folder, disk), nullptr, nullptr};
   if (arguments.store_task != "verify") open.store->leave_damage();
   const std::optional<SlurmMark> mark = find_slurm_mark(*open.store);
-  if (alone && mark) refuse_gc(*mark);
+  if (opening != Opening::look && mark) refuse_gc(*mark);
   if (mark || is_read_only(folder)) {
-    if (alone) fail(ErrorKind::io, "{}: may not be written to", folder.string());
+    if (opening != Opening::look) fail(ErrorKind::io, "{}: may not be written to", folder.string());
     open.database = open_database_copy(*open.store, mark.has_value());
     return open;
   }
   open.claims = std::make_unique<Claims>(folder / "lock");
-  const std::atomic<bool>& stop = stop_on_signal();
-  for (bool told = false; alone && !open.claims->try_own_database();) {
-    if (stop) fail(ErrorKind::cancelled, "stopped; nothing is removed");
-    if (!told) warn(fmt::format("{}: waits for what has the store open", folder.string()));
-    told = true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  if (opening == Opening::collect) {
+    wait_for_others(*open.claims, folder);
+    open.database = open_own_database(*open.store);
+    return open;
   }
-  open.database = alone ? open_own_database(*open.store) : open_database(*open.store, *open.claims);
+  if (opening == Opening::forecast && !open.claims->try_own_database())
+    warn(
+        fmt::format("{}: gc would wait for what has the store open, and may then find more that "
+                    "is named",
+                    folder.string()));
+  open.database = open_database(*open.store, *open.claims);
   return open;
+}
+
+/// Builds that others are to complete named nothing yet.
+void check_no_parts(const Store& store) {
+  for (const Parts& parts : find_parts(store))
+    fail(ErrorKind::usage,
+         "{0}: builds of a part (--shard, --no-files) of the recipe {1} made things here that no "
+         "build has placed yet, and gc would remove them: place them by dsbuild build {1} --store "
+         "{0}, then collect; or remove {2} to give them up",
+         store.folder().string(), parts.recipe, parts.file.string());
 }
 
 /// A database that was lost and made anew does not know what datasets name until they are built.
@@ -131,7 +154,8 @@ std::uint64_t parse_bytes(const std::string& text) {
 }
 
 int run_stats(const Arguments& arguments, Disk& disk) {
-  const OpenStore open = open_store(arguments, false, disk);
+  const OpenStore open = open_store(arguments, Opening::look, disk);
+  const std::vector<Parts> all_parts = find_parts(*open.store);
   const StoreUse use =
       look_at_store(*open.store, *open.database, arguments.forget, stop_on_signal());
   warn_of_strange(*open.store, use);
@@ -152,6 +176,9 @@ int run_stats(const Arguments& arguments, Disk& disk) {
   nlohmann::json elsewhere = nlohmann::json::array();
   for (const fs::path& folder : use.unknown)
     elsewhere.push_back(folder.string());
+  nlohmann::json unplaced = nlohmann::json::array();
+  for (const Parts& parts : all_parts)
+    unplaced.push_back(parts.recipe);
   if (arguments.json) {
     print_json({{"store", open.store->folder().string()},
                 {"datasets", datasets},
@@ -164,6 +191,7 @@ int run_stats(const Arguments& arguments, Disk& disk) {
                 {"unreadable_records", use.unreadable},
                 {"strangers", use.strangers.size()},
                 {"elsewhere", elsewhere},
+                {"parts", unplaced},
                 {"temporaries", to_json(Amount{use.temporaries.size(), use.temporary_bytes})}});
     return 0;
   }
@@ -172,10 +200,12 @@ int run_stats(const Arguments& arguments, Disk& disk) {
     say(Stream::result, "  {}: {} images, {}{}\n", dataset.row.name, dataset.images,
         dataset.folder.empty() ? "in a folder that its next build tells" : dataset.folder.string(),
         dataset.is_gone ? ", which is gone (gc --forget)" : "");
-  if (use.datasets.empty() && use.unknown.empty() && !use.files.empty())
+  for (const Parts& parts : all_parts)
     say(Stream::result,
-        "  it knows no dataset: what builds of a part made with --database (--shard, --no-files) "
-        "is named by the build of all images that follows\n");
+        "  {}: builds of a part (--shard, --no-files), which a build of all images is to place\n",
+        parts.recipe);
+  if (use.datasets.empty() && use.unknown.empty() && all_parts.empty() && !use.files.empty())
+    say(Stream::result, "  it knows no dataset\n");
   for (const fs::path& folder : use.unknown)
     say(Stream::result,
         "  {}: a dataset whose builds keep their database elsewhere (--database), or built before "
@@ -190,8 +220,8 @@ int run_stats(const Arguments& arguments, Disk& disk) {
       amount_text(records));
   if (use.missing > 0)
     say(Stream::result,
-        "  {} objects that datasets name are missing (dsbuild build makes again what a folder "
-        "lacks of them)\n",
+        "  {} objects that datasets name are missing (store verify puts back what their folders "
+        "have of them, dsbuild build makes the rest)\n",
         use.missing);
   if (!use.temporaries.empty())
     say(Stream::result, "  left by killed builds: {}\n",
@@ -210,9 +240,14 @@ int run_gc(const Arguments& arguments, Disk& disk) {
     request.older = std::chrono::seconds(static_cast<std::int64_t>(*seconds));
   }
   if (!arguments.size.empty()) request.most_bytes = parse_bytes(arguments.size);
-  const OpenStore open = open_store(arguments, !arguments.dry_run, disk);
+  const OpenStore open =
+      open_store(arguments, arguments.dry_run ? Opening::forecast : Opening::collect, disk);
   std::optional<Guest> guest;
-  if (!arguments.dry_run) guest.emplace(Guest::collect(*open.store));
+  if (arguments.dry_run)
+    Guest::check_collect(*open.store);
+  else
+    guest.emplace(Guest::collect(*open.store));
+  check_no_parts(*open.store);
   const StoreUse use =
       look_at_store(*open.store, *open.database, arguments.forget, stop_on_signal());
   check_all_known(*open.store, use);
@@ -278,8 +313,19 @@ int run_store_gather(const Arguments& arguments, Disk& disk) {
   return run_gather(arguments, store_folder_of(arguments, disk), disk);
 }
 
+/// What is missing of what datasets name, and what then follows.
+std::string missing_text(std::uint64_t missing, std::uint64_t restored, bool looks) {
+  std::string text = fmt::format("{} objects that datasets name are missing", missing);
+  if (restored > 0)
+    text = fmt::format("{} objects put back from datasets' folders; ", restored) + text;
+  if (missing > 0)
+    text += looks ? "; store verify without -n puts back what datasets' folders have of them"
+                  : "; dsbuild build of their datasets, which lack them, too, makes them again";
+  return text;
+}
+
 int run_store_verify(const Arguments& arguments, Disk& disk) {
-  const OpenStore open = open_store(arguments, false, disk);
+  const OpenStore open = open_store(arguments, Opening::look, disk);
   const std::atomic<bool>& stop = stop_on_signal();
   std::vector<std::pair<Store::Kind, Hash128>> all;
   std::uint64_t left = 0, done = 0;
@@ -301,38 +347,46 @@ int run_store_verify(const Arguments& arguments, Disk& disk) {
       progress(++done, all.size());
     }
   }
+  const bool mends = !arguments.dry_run && !is_read_only(open.store->folder());
+  const std::uint64_t restored = mends ? restore_objects(*open.store, *open.database, stop) : 0;
   const std::uint64_t missing =
       look_at_store(*open.store, *open.database, arguments.forget, stop).missing;
   if (arguments.json)
-    print_json(
-        {{"files", all.size()}, {"damaged", damaged}, {"not_removed", left}, {"missing", missing}});
+    print_json({{"files", all.size()},
+                {"damaged", damaged},
+                {"not_removed", left},
+                {"restored", restored},
+                {"missing", missing}});
   else
-    say(Stream::report,
-        "{} files read, {} damaged{}; {} objects that datasets name are missing{}\n", all.size(),
-        damaged,
+    say(Stream::report, "{} files read, {} damaged{}; {}\n", all.size(), damaged,
         arguments.dry_run ? ""
         : left > 0        ? fmt::format(" ({} of them could not be removed)", left)
                           : " and removed",
-        missing,
-        damaged + missing > 0 ? "; dsbuild build makes again what a dataset's folder lacks of them"
-                              : "");
-  return damaged + missing > 0 ? 1 : 0;
+        missing_text(missing, restored, !mends));
+  return damaged + restored + missing > 0 ? 1 : 0;
 }
+
+constexpr std::array<StoreTask, 4> k_tasks{{
+    {"stats", "what is in it, and for which datasets", false, run_stats},
+    {"gc", "remove what none of them names", true, run_gc},
+    {"verify", "read every file, remove what is damaged, put back what folders have of that", true,
+     run_store_verify},
+    {"gather", "take what it has into another", false, run_store_gather},
+}};
 
 }  // namespace
 
+std::span<const StoreTask> store_tasks() {
+  return k_tasks;
+}
+
 int run_store(const Arguments& arguments) {
-  static constexpr std::array<std::pair<std::string_view, int (*)(const Arguments&, Disk&)>, 4>
-      k_tasks{{{"stats", run_stats},
-               {"gc", run_gc},
-               {"verify", run_store_verify},
-               {"gather", run_store_gather}}};
   RealDisk disk;
   std::vector<std::string_view> known;
-  for (const auto& [name, run] : k_tasks)
-    known.push_back(name);
+  for (const StoreTask& one : k_tasks)
+    known.emplace_back(one.name);
   const auto* const task = std::find_if(k_tasks.begin(), k_tasks.end(), [&](const auto& one) {
-    return one.first == arguments.store_task;
+    return one.name == arguments.store_task;
   });
   if (task == k_tasks.end())
     fail(ErrorKind::usage, "store: wanted {}, got {}{}", fmt::format("{}", fmt::join(known, ", ")),
@@ -345,10 +399,9 @@ int run_store(const Arguments& arguments) {
          arguments.store_task);
   if (arguments.store_task != "gc" && arguments.forget)
     fail(ErrorKind::usage, "store {}: --forget is for gc", arguments.store_task);
-  const bool takes_dry_run = arguments.store_task == "gc" || arguments.store_task == "verify";
-  if (!takes_dry_run && arguments.dry_run)
+  if (!task->takes_dry_run && arguments.dry_run)
     fail(ErrorKind::usage, "store {}: --dry-run is for gc and verify", arguments.store_task);
-  return task->second(arguments, disk);
+  return task->run(arguments, disk);
 }
 
 }  // namespace ds

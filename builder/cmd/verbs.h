@@ -3,7 +3,13 @@
 
 #include "builder/cmd/arguments.h"
 
+#include <span>
+#include <string>
+#include <vector>
+
 namespace ds {
+
+class Disk;
 
 int run_build(const Arguments& arguments);
 int run_plan(const Arguments& arguments);
@@ -27,5 +33,17 @@ int run_slurm(const Arguments& arguments);
 int run_store(const Arguments& arguments);
 int run_clean(const Arguments& arguments);
 int run_log(const Arguments& arguments);
+
+/// What `dsbuild store` does.
+struct StoreTask {
+  const char* name;
+  const char* help;
+  bool takes_dry_run;
+  int (*run)(const Arguments& arguments, Disk& disk);
+};
+std::span<const StoreTask> store_tasks();
+
+/// What `dsbuild schema` prints.
+std::vector<std::string> schema_names();
 
 }  // namespace ds

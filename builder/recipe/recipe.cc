@@ -160,7 +160,8 @@ Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrid
   std::error_code error;
   if (!fs::is_regular_file(file, error)) {
     const fs::path with_ending = file.string() + ".toml";
-    fail(ErrorKind::recipe, "{}: must be a recipe, found no file{}", file.string(),
+    fail(ErrorKind::recipe, "{}: must be a recipe or the folder of a dataset, found no file{}",
+         file.string(),
          fs::is_regular_file(with_ending, error)
              ? fmt::format(", did you mean {}?", with_ending.string())
              : similar_name(file));

@@ -214,12 +214,15 @@ void open_store(Dataset& dataset, const fs::path& folder, const DatasetRequest& 
                 Access access, Disk& disk) {
   dataset.store = std::make_unique<Store>(
       folder, disk, request.local_folder.empty() ? fs::path() : normal(request.local_folder));
-  if (access == Access::build)
-    refuse_read_only(folder);
-  else
+  const fs::path own =
+      request.database_folder.empty()
+          ? database_beside(folder, dataset.folder / k_state_folder, access == Access::build)
+          : normal(request.database_folder);
+  if (access != Access::build)
     dataset.store->leave_damage();
-  if (!request.database_folder.empty()) {
-    const fs::path own = normal(request.database_folder);
+  else if (own.empty())
+    refuse_read_only(folder, "a build keeps there what it makes");
+  if (!own.empty()) {
     dataset.claims = std::make_unique<Claims>(own / "lock");
     dataset.database = open_local_database(*dataset.store, *dataset.claims, own);
     return;
@@ -239,7 +242,7 @@ constexpr const char* k_datasets = "datasets";
 
 /// A store that many datasets share is to know where they lie.
 void note_folder(const Store& store, const Pointer& pointer, Disk& disk) {
-  if (store.folder() == pointer.folder / k_state_folder) return;
+  if (store.folder() == pointer.folder / k_state_folder || is_read_only(store.folder())) return;
   if (folder_of_dataset(store, pointer.id) == pointer.folder) return;
   disk.write(store.folder() / k_datasets / pointer.id, bytes_of(pointer.folder.string() + "\n"));
 }

@@ -56,10 +56,52 @@ std::optional<std::string> text_of(const fs::path& file) {
   }
 }
 
+struct Other {
+  fs::path file;
+  std::string text;
+  std::string who;  ///< "process 17 on host"
+};
+
+enum class Gone { remove, leave };
+
+/// Another guest than `own`, which may be empty. Files of those that are gone: as `gone` says.
+std::optional<Other> find_other(const fs::path& guests, const fs::path& own, bool that_collects,
+                                Gone gone) {
+  std::error_code error;
+  std::optional<Other> found;
+  for (fs::directory_iterator entry(guests, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::optional<Name> name = name_of(entry->path());
+    if (!name || entry->path() == own) continue;
+    if (name->host == own_host() && !is_running(name->process)) {
+      if (gone == Gone::remove) ::unlink(entry->path().c_str());
+      continue;
+    }
+    const std::optional<std::string> text = text_of(entry->path());
+    if (text && (*text == k_collects) == that_collects)
+      found = {entry->path(), *text, fmt::format("process {} on {}", name->process, name->host)};
+  }
+  if (error && error != std::errc::no_such_file_or_directory)
+    fail_system(guests, "list", error.value());
+  return found;
+}
+
+void refuse_beside(const Store& store, const std::optional<Other>& other) {
+  if (!other) return;
+  fail(ErrorKind::usage,
+       "{}: {} works in it with a database of its own ({}), so what it names is not known here; "
+       "collect when that has ended, or remove {} if it has",
+       store.folder().string(), other->who, other->text, other->file.string());
+}
+
+fs::path guests_of(const Store& store) {
+  return store.folder() / "guests";
+}
+
 }  // namespace
 
 Guest::Guest(const Store& store, const std::string& text)
-    : file_(store.folder() / "guests" / fmt::format("{}.{}", own_host(), ::getpid())) {
+    : file_(guests_of(store) / fmt::format("{}.{}", own_host(), ::getpid())) {
   write_file_atomic(file_, text);
 }
 
@@ -80,32 +122,13 @@ void Guest::note_filled() const {
   write_file_atomic(file_.parent_path().parent_path() / k_filled_file, "");
 }
 
-std::optional<Guest::Other> Guest::find_other(bool that_collects) const {
-  std::error_code error;
-  std::optional<Other> found;
-  for (fs::directory_iterator entry(file_.parent_path(), error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::optional<Name> name = name_of(entry->path());
-    if (!name || entry->path() == file_) continue;
-    if (name->host == own_host() && !is_running(name->process)) {
-      ::unlink(entry->path().c_str());
-      continue;
-    }
-    const std::optional<std::string> text = text_of(entry->path());
-    if (text && (*text == k_collects) == that_collects)
-      found = {entry->path(), *text, fmt::format("process {} on {}", name->process, name->host)};
-  }
-  if (error) fail_system(file_.parent_path(), "list", error.value());
-  return found;
-}
-
 Guest Guest::build(const Store& store, const std::string& what,
                    const std::function<void(const std::string& who)>& waits_for) {
   Guest guest(store, "build " + what);
   guest.builds_ = true;
   guest.note_filled();
   for (bool told = false;; told = true) {
-    const std::optional<Other> other = guest.find_other(true);
+    const auto other = find_other(guests_of(store), guest.file_, true, Gone::remove);
     if (!other) return guest;
     if (!told)
       waits_for(fmt::format("{} (remove {} if it has ended)", other->who, other->file.string()));
@@ -115,12 +138,12 @@ Guest Guest::build(const Store& store, const std::string& what,
 
 Guest Guest::collect(const Store& store) {
   Guest guest(store, k_collects);
-  if (const std::optional<Other> other = guest.find_other(false))
-    fail(ErrorKind::usage,
-         "{}: {} works in it with a database of its own ({}), so what it names is not known here; "
-         "collect when that has ended, or remove {} if it has",
-         store.folder().string(), other->who, other->text, other->file.string());
+  refuse_beside(store, find_other(guests_of(store), guest.file_, false, Gone::remove));
   return guest;
+}
+
+void Guest::check_collect(const Store& store) {
+  refuse_beside(store, find_other(guests_of(store), {}, false, Gone::leave));
 }
 
 }  // namespace ds

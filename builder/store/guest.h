@@ -28,18 +28,14 @@ class Guest {
                      const std::function<void(const std::string& who)>& waits_for);
   /// Collects the store. Throws Error(usage) where others build into it, and names them.
   static Guest collect(const Store& store);
+  /// Throws as `collect` would now, and leaves all as it is.
+  static void check_collect(const Store& store);
   ~Guest();
   Guest(Guest&& other) noexcept;
   Guest& operator=(Guest&&) = delete;
 
  private:
   Guest(const Store& store, const std::string& text);
-  struct Other {
-    std::filesystem::path file;
-    std::string text;
-    std::string who;  ///< "process 17 on host"
-  };
-  std::optional<Other> find_other(bool that_collects) const;
   void note_filled() const;
 
   std::filesystem::path file_;

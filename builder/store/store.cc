@@ -124,7 +124,7 @@ std::optional<std::string> Store::read_whole(Kind kind, Hash128 hash) {
     Content found = read_content(file, hash);
     if (found.text) return std::move(found.text);
     if (found.fault.empty()) continue;
-    std::string outcome = mends_ ? " and is made again" : " (dsbuild build makes it again)";
+    std::string outcome = mends_ ? ", and removed" : " (dsbuild store verify)";
     try {
       if (mends_) disk_.remove(file);
     } catch (const Error& error) {  // of somebody else, on a read-only medium, a full folder

@@ -85,6 +85,15 @@ bool take_filled(const Store& store) {
   return !error || fs::exists(taken_filled(store), error);
 }
 
+/// Where the database is new, set aside, removed or emptied by somebody, and where others filled
+/// the store: the records know what that holds.
+void catch_up(Database& database, Store& store) {
+  const bool filled = take_filled(store);
+  if (filled || !database.has_products()) refill(database, store);
+  std::error_code error;
+  if (filled) fs::remove(taken_filled(store), error);
+}
+
 /// With SQLite's log, of which the last parts may lie there alone.
 void copy_database(const Store& store, const fs::path& folder) {
   std::error_code error;
@@ -108,16 +117,14 @@ void enter_record(Database& database, const std::string& text) {
 
 std::unique_ptr<Database> open_database(Store& store, Claims& claims) {
   auto database = open_or_renew(store.folder() / k_database_file, claims);
-  // New, set aside, removed or emptied by somebody: the records know what the store holds.
-  const bool filled = take_filled(store);
-  if (filled || !database->has_products()) refill(*database, store);
-  std::error_code error;
-  if (filled) fs::remove(taken_filled(store), error);
+  catch_up(*database, store);
   return database;
 }
 
-std::unique_ptr<Database> open_own_database(const Store& store) {
-  return std::make_unique<Database>(store.folder() / k_database_file);
+std::unique_ptr<Database> open_own_database(Store& store) {
+  auto database = std::make_unique<Database>(store.folder() / k_database_file);
+  catch_up(*database, store);
+  return database;
 }
 
 std::unique_ptr<Database> open_database_copy(Store& store, bool with_records) {
@@ -126,7 +133,9 @@ std::unique_ptr<Database> open_database_copy(Store& store, bool with_records) {
   const fs::path folder = make_process_folder(parent);
   copy_database(store, folder);
   auto database = std::make_unique<Database>(folder / k_database_file);
-  if (with_records || fs::exists(store.folder() / k_filled_file, error)) refill(*database, store);
+  if (with_records || fs::exists(store.folder() / k_filled_file, error) ||
+      fs::exists(taken_filled(store), error))
+    refill(*database, store);
   fs::remove_all(folder, error);  // what is open lives on
   return database;
 }
@@ -158,15 +167,20 @@ bool is_read_only(const fs::path& folder) {
   return ::access(folder.c_str(), W_OK) != 0 && (errno == EROFS || errno == EACCES);
 }
 
-void refuse_read_only(const fs::path& folder) {
+fs::path database_beside(const fs::path& store, const fs::path& state, bool may_make) {
+  std::error_code error;
+  if (!is_read_only(store) || store == state || fs::equivalent(store, state, error)) return {};
+  const bool is_there = fs::exists(state / k_database_file, error) && !is_read_only(state);
+  return may_make || is_there ? state : fs::path();
+}
+
+void refuse_read_only(const fs::path& folder, std::string_view why) {
   if (!is_read_only(folder)) return;
   fail(
       ErrorKind::io,
-      "{0}: cannot write there: {1}; a build keeps what it makes in its store, also where that has "
-      "all: dsbuild store gather {0} MINE takes what it has into one of your own, for build "
-      "--store "
-      "MINE",
-      folder.string(), std::generic_category().message(errno));
+      "{0}: cannot write there: {1}; {2}: dsbuild store gather {0} MINE takes what it has into one "
+      "of your own, for build --store MINE",
+      folder.string(), std::generic_category().message(errno), why);
 }
 
 }  // namespace ds

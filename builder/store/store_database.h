@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string_view>
 
 namespace ds {
 
@@ -18,7 +19,7 @@ std::unique_ptr<Database> open_database(Store& store, Claims& claims);
 
 /// The same for whoever owns it (Claims::try_own_database) and takes things away: throws DamagedDatabase
 /// where it is damaged.
-std::unique_ptr<Database> open_own_database(const Store& store);
+std::unique_ptr<Database> open_own_database(Store& store);
 
 /// Opens a copy of the store's database, as whoever may not write there wants it: SQLite has to write
 /// beside a database to read it. `with_records`: with what the store's records tell of since. What is
@@ -42,7 +43,13 @@ void put_database(const Store& store, Database& database, const std::filesystem:
 /// Whether this process may not write into the folder: it is another user's, or its disk is mounted
 /// read-only.
 bool is_read_only(const std::filesystem::path& folder);
-/// Throws Error(io), with what to do, where a build's store may not be written to.
-void refuse_read_only(const std::filesystem::path& folder);
+/// Where a database for a store that may not be written to lies, of builds that take from it what
+/// it has: in the dataset's own `state` folder. Empty where the store may be written to, or is that
+/// folder; and, unless it `may_make` one, where none is there.
+std::filesystem::path database_beside(const std::filesystem::path& store,
+                                      const std::filesystem::path& state, bool may_make);
+/// Throws Error(io), with what to do, where a store may not be written to. `why`: what would be: "a
+/// build keeps there what it makes".
+void refuse_read_only(const std::filesystem::path& folder, std::string_view why);
 
 }  // namespace ds

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """dsbuild store stats|gc|verify, and dsbuild clean: what datasets name stays, whatever is killed."""
+import hashlib
 import os
 import shutil
 import signal
@@ -61,7 +62,7 @@ class StoreTest(TinyCase):
         # Placed anew from what is left.
         shutil.rmtree(self.folder / "a/images")
         self.assert_counts(self.make("a"), built=IMAGES, traced=0)
-        self.assertEqual(self.task("verify"), {"files": len(wanted), "damaged": 0, "not_removed": 0, "missing": 0})
+        self.assertEqual(self.task("verify"), {"files": len(wanted), "damaged": 0, "not_removed": 0, "restored": 0, "missing": 0})
         # What went is traced again.
         self.assert_counts(self.make("a", "--set", "engine.spp=2"), traced=IMAGES)
 
@@ -122,11 +123,40 @@ class StoreTest(TinyCase):
         looked = self.task("verify", "-n", code=1)
         self.assertEqual((looked["damaged"], looked["not_removed"], victim.exists()), (1, 1, True))
         found = self.task("verify", code=1)
-        self.assertEqual((found["damaged"], victim.exists()), (1, False))
-        self.assertEqual(self.task("verify", code=1)["damaged"] if found["missing"] else 0, 0)
-        shutil.rmtree(self.folder / "a/images")
-        self.make("a")
-        self.task("verify")
+        self.assertEqual((found["damaged"], found["not_removed"], found["missing"]), (1, 0, 0))
+        self.assertEqual(self.task("verify")["damaged"], 0)
+
+    def test_verify_puts_back_what_folders_have(self):
+        self.make("a", "--copy")
+        out = self.folder / "a"
+        masks = {}  # views may have the same
+        for path in sorted((out / "images").rglob("*.mask.png")):
+            masks.setdefault(hashlib.sha256(path.read_bytes()).hexdigest(), []).append(path)
+        for victim in self.files("objects"):
+            if hashlib.sha256(victim.read_bytes()).hexdigest() in masks:
+                victim.unlink()
+        lost = len(masks)
+        # To a build the folder's files are up to date, so it makes nothing.
+        self.assert_nothing_to_do("a")
+        self.assertEqual(self.task("verify", "-n", code=1)["missing"], lost)
+        run = self.run_it("store", "verify", self.store, "-n")
+        self.assertIn("store verify without -n puts back what datasets' folders have of them", run.out)
+        edited = sorted(masks.values())[0]
+        whole = edited[0].read_bytes()
+        for path in edited:
+            path.write_bytes(whole + b"mine")
+        run = self.run_it("store", "verify", self.store)
+        self.assertEqual(run.code, 1, run)
+        self.assertIn(f"{lost - 1} objects put back from datasets' folders; 1 objects that datasets name are missing; dsbuild build of "
+                      "their datasets, which lack them, too, makes them again", run.out)
+        found = self.task("verify", code=1)
+        self.assertEqual((found["restored"], found["missing"]), (0, 1))
+        # As it says: the build makes that one again, for the store and the folder.
+        self.assert_counts(self.make("a"), built=len(edited), reused=IMAGES - len(edited), edited_files=len(edited))
+        self.assertEqual({path.read_bytes() for path in edited}, {whole})
+        self.assertEqual(self.task("verify")["missing"], 0)
+        shutil.rmtree(out / "images")
+        self.assert_counts(self.make("a"), built=IMAGES, traced=0)
 
     def test_verify_of_a_store_that_may_not_be_written_to(self):
         self.make("a", "--copy")
@@ -153,6 +183,9 @@ class StoreTest(TinyCase):
         collector = self.start("store", "gc", self.store)
         time.sleep(0.5)
         self.assertIsNone(collector.poll(), "it waits")
+        dry = self.run_it("store", "gc", self.store, "-n")
+        self.assertEqual(dry.code, 0, dry)
+        self.assertIn("gc would wait for what has the store open, and may then find more that is named", dry.err)
         build.send_signal(signal.SIGINT)
         build.communicate(timeout=60)
         out, err = collector.communicate(timeout=60)
@@ -172,17 +205,19 @@ class StoreTest(TinyCase):
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.02)
         before = len(self.files("records"))
-        run = self.run_it("store", "gc", self.store)
-        self.assertEqual(run.code, 2, run)
-        self.assertRegex(run.err, r"process \d+ on .* works in it with a database of its own \(build .*recipe.toml\)")
+        for also in ([], ["-n"]):
+            run = self.run_it("store", "gc", self.store, *also)
+            self.assertEqual(run.code, 2, run)
+            self.assertRegex(run.err, r"process \d+ on .* works in it with a database of its own \(build .*recipe.toml\)")
         self.assertGreaterEqual(len(self.files("records")), before)
-        self.assertEqual(self.run_it("store", "gc", "-n", self.store).code, 0, "that removes nothing")
         build.send_signal(signal.SIGINT)
         build.communicate(timeout=60)
         self.assertEqual(list(guests.iterdir()), [])
         # Killed on this machine, it is known to be gone; on another, nobody can tell.
         host = os.uname().nodename
         (guests / f"{host}.{self.dead_process()}").write_text("build it")
+        self.task("gc", "-n")
+        self.assertEqual(len(list(guests.iterdir())), 1, "who only looks removes nothing")
         self.task("gc")
         self.assertEqual(list(guests.iterdir()), [])
         (guests / "elsewhere.17").write_text("build it")
@@ -212,7 +247,8 @@ class StoreTest(TinyCase):
     def test_stats_tells_of_datasets_with_a_database_elsewhere(self):
         self.make("a", "--database", self.folder / "db", "--shard", "1/2")
         run = self.run_it("store", "stats", self.store)
-        self.assertIn("it knows no dataset: what builds of a part made with --database", run.out)
+        self.assertIn(f"'{self.recipe}': builds of a part (--shard, --no-files), which a build of all images is to place\n", run.out)
+        self.assertEqual(self.task("stats")["parts"], [f"'{self.recipe}'"])
         # Before its end, when it leaves a copy in the store.
         build = self.start("build", self.recipe, "-o", self.folder / "a", "--store", self.store, "--database",
                            self.folder / "db", "--set", "engine.spp=20000")
@@ -228,17 +264,86 @@ class StoreTest(TinyCase):
         self.make("a")
         self.assertEqual(self.task("stats")["elsewhere"], [])
 
-    def test_a_build_from_a_store_that_may_not_be_written_to_says_what_to_do(self):
+    def test_gc_leaves_what_builds_of_a_part_made(self):
+        """With databases of their own, as on other machines, or none; in a store that knows another dataset."""
+        self.make("other", "--set", "engine.spp=2")
+        spp = ["--set", "engine.spp=3"]
+        for own in (["--database", self.folder / "db"], []):
+            for number in (1, 2):
+                self.make("passing", *spp, *own, "--no-files", "--shard", f"{number}/2")
+            before = self.files("objects") | self.files("records")
+            for also in ([], ["-n"]):
+                run = self.run_it("store", "gc", self.store, *also)
+                self.assertEqual((run.code, len(run.err.splitlines())), (2, 1), run)
+                self.assertIn(f"builds of a part (--shard, --no-files) of the recipe '{self.recipe}' --set 'engine.spp=3' made things "
+                              "here that no build has placed yet", run.err)
+            self.assertEqual(self.files("objects") | self.files("records"), before)
+            # Another whole build is not the one that places them.
+            self.make("other", "--set", "engine.spp=2")
+            self.assertEqual(self.run_it("store", "gc", self.store).code, 2)
+            self.assert_counts(self.make("a", *spp), built=IMAGES, traced=0, developed=0)
+            self.assertEqual(self.task("gc")["objects"]["files"], 0)
+            self.assertFalse((self.store / "filled").exists())
+            shutil.rmtree(self.folder / "a")
+            self.task("gc", "--forget")
+        self.make("passing", *spp, "--no-files")
+        note = list((self.store / "parts").iterdir())
+        self.assertIn(f"or remove {note[0]} to give them up", self.run_it("store", "gc", self.store).err)
+        note[0].unlink()
+        self.assertGreater(self.task("gc", "--forget")["objects"]["files"], 0)
+
+    def test_what_is_not_there(self):
+        (self.folder / "empty").mkdir()
+        for what in ("stats", "gc", "verify", "gather"):
+            to = ["mine"] if what == "gather" else []
+            for target, found in (("nowhere", "nothing at nowhere"), ("empty", "the folder empty, which is neither"),
+                                  (self.recipe, f"the recipe {self.recipe}, of which nothing is built in {self.folder}/out/tiny")):
+                run = self.run_it("store", what, target, *to)
+                self.assertEqual((run.code, run.err), (2, f"dsbuild: error: store {what}: wanted a store, or a dataset that has one, "
+                                                          f"found {found}\n"))
+        self.make("a")
+        (self.folder / "empty/file").write_text("mine")
+        run = self.run_it("store", "gather", self.store, "empty")
+        self.assertEqual((run.code, run.err), (2, "dsbuild: error: store gather: wanted a store, or a dataset that has one, found the "
+                                                  f"folder {self.folder}/empty, which is neither\n"))
+        self.assertIn("nowhere: must be a recipe or the folder of a dataset, found no file", self.run_it("status", "nowhere").err)
+
+    def test_a_build_from_a_store_that_may_not_be_written_to(self):
         self.make("a")
         self.mount_read_only()
-        run = self.run_it("build", self.recipe, "-o", self.folder / "b", "--store", self.store)
-        self.assertEqual(run.code, 1, run)
-        self.assertIn(f"{self.store}: cannot write there: Read-only file system; ", run.err)
+        before = {path: path.read_bytes() for path in self.store.rglob("*") if path.is_file()}
+        out = self.folder / "b"
+        for more in ([], ["--database", self.folder / "db"]):
+            self.assert_counts(self.make("b", *more), built=IMAGES, traced=0, developed=0)
+            self.assertEqual(self.contents(out), self.contents(self.folder / "a"))
+            # It is a dataset as any other, which its verbs know.
+            self.assert_nothing_to_do("b", *more)
+            status = self.run_it("status", out, *more, "--json").json
+            self.assertEqual((status["up_to_date"], status["builds"]), (IMAGES, 2))
+            self.assertEqual(self.run_it("verify", out, *more).code, 0)
+            (out / "images/box.off/0.png").unlink()
+            self.assert_counts(self.make("b", *more), built=1, reused=IMAGES - 1, traced=0)
+            shutil.rmtree(out)
+        self.make("b")
+        self.assertEqual(self.run_it("clean", out).code, 0)
+        self.assert_counts(self.make("b"), built=IMAGES, traced=0)
+        self.assertEqual({path: path.read_bytes() for path in self.store.rglob("*") if path.is_file()}, before)
+        # What it has not cannot be made, and is not begun.
+        run = self.run_it("build", self.recipe, "-o", out, "--store", self.store, "--set", "engine.spp=2")
+        self.assertEqual((run.code, len(run.err.splitlines())), (1, 1), run)
+        self.assertIn(f"{self.store}: cannot write there: Read-only file system; of {IMAGES} of {IMAGES} images it has not all", run.err)
         self.assertIn(f"dsbuild store gather {self.store} MINE takes what it has into one of your own", run.err)
         mine = self.folder / "mine"
         self.assertEqual(self.run_it("store", "gather", self.store, mine).code, 0)
-        run = self.run_it("build", self.recipe, "-o", self.folder / "b", "--store", mine, "--json")
+        run = self.run_it("build", self.recipe, "-o", self.folder / "c", "--store", mine, "--json")
         self.assert_counts(run.json, built=IMAGES, traced=0)
+        # A dataset's own store is one that it cannot do without.
+        self.build(out=self.folder / "d")
+        self.store = self.folder / "d/.dsbuild"
+        self.mount_read_only()
+        run = self.run_it("build", self.recipe, "-o", self.folder / "d")
+        self.assertEqual(run.code, 1, run)
+        self.assertIn("cannot write there: Read-only file system; a build keeps there what it makes", run.err)
 
     def running(self):
         with sqlite3.connect(f"file:{self.store / 'dsbuild.sqlite'}?mode=ro", uri=True) as database:

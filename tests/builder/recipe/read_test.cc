@@ -418,7 +418,8 @@ TEST_F(RecipeReadTest, SaysWhenThereIsNoRecipe) {
     FAIL() << "no error";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::recipe);
-    EXPECT_THAT(error.what(), HasSubstr("none.toml: must be a recipe, found no file"));
+    EXPECT_THAT(error.what(),
+                HasSubstr("none.toml: must be a recipe or the folder of a dataset, found no file"));
   }
 }
 
