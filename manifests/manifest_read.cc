@@ -380,8 +380,9 @@ std::string read_manifest_file(const fs::path& file) {
     const bool is_dataset = fs::is_directory(file.parent_path(), error) ||
                             fs::exists(folder / ".dsbuild" / "dataset", error);
     if (!is_dataset)
-      fail(ErrorKind::usage, "{}: wanted the folder of a dataset, found one without manifest/{}",
-           folder.string(), file.filename().string());
+      fail(ErrorKind::usage, "{}: wanted the folder of a dataset, found {}", folder.string(),
+           fs::exists(folder, error) ? "one without manifest/" + file.filename().string()
+                                     : "nothing there");
     fail(ErrorKind::asset, "{}: must be there: a dataset has a manifest", file.string());
   }
   return read_text_file(file);

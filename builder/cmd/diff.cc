@@ -92,17 +92,38 @@ std::vector<FileComparisons> compare_pictures(const DatasetDifference& found, co
   return comparisons;
 }
 
+void check_there(const char* which, const std::string& target) {
+  std::error_code error;
+  if (!fs::exists(target, error))
+    fail(ErrorKind::usage,
+         "diff: wanted {}, a recipe, the folder of a dataset or an image file, found nothing at {}",
+         which, target);
+}
+
+/// The folder of a dataset that a word names, which is made.
+fs::path made_dataset(const char* which, const std::string& target) {
+  std::error_code error;
+  fs::path folder = dataset_folder({target, {}, {}, {}, false});
+  if (!fs::is_directory(target, error) && !fs::exists(folder / "manifest", error))
+    fail(ErrorKind::usage,
+         "diff: wanted {}, a dataset that is made, found the recipe {}, of which nothing is built "
+         "in {} (name its folder, or dsbuild build it)",
+         which, target, folder.string());
+  return folder;
+}
+
 }  // namespace
 
 int run_diff(const Arguments& arguments) {
   const bool a_is_file = is_image_file(arguments.target),
              b_is_file = is_image_file(arguments.other);
   if (a_is_file && b_is_file) return diff_of_files(arguments);
+  check_there("A", arguments.target);
+  check_there("B", arguments.other);
   if (a_is_file || b_is_file)
     fail(ErrorKind::usage, "diff: wanted two datasets or two image files, found {} and {}",
          arguments.target, arguments.other);
-  const fs::path a = dataset_folder({arguments.target, {}, {}, {}, false}),
-                 b = dataset_folder({arguments.other, {}, {}, {}, false});
+  const fs::path a = made_dataset("A", arguments.target), b = made_dataset("B", arguments.other);
   for (const fs::path& dataset : {a, b})
     if (!arguments.diff_folder.empty()) check_outside(arguments.diff_folder, dataset);
   Pictures pictures(arguments.diff_folder);

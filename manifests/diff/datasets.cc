@@ -53,10 +53,73 @@ std::vector<ChangedFile> changed_files(const ImageRecord& a, const ImageRecord& 
   return changed;
 }
 
-ChangedImage compare(const ImageRecord& a, const ImageRecord& b) {
-  ChangedImage found{&a, &b, {}, {}, changed_files(a, b)};
+/// The lines of a recipe's text whose keys begin so.
+std::vector<std::string_view> lines_of(std::string_view recipe, std::string_view beginning) {
+  // Of the engine, but in no key: what is kept, and what is refused.
+  constexpr std::array<std::string_view, 2> k_in_no_key{"engine.keep_sums ",
+                                                        "engine.rejected_limit "};
+  std::vector<std::string_view> lines;
+  for (std::size_t at = 0; at < recipe.size();) {
+    const std::size_t end = std::min(recipe.find('\n', at), recipe.size());
+    const std::string_view line = recipe.substr(at, end - at);
+    at = end + 1;
+    const auto begins = [&](std::string_view key) { return line.starts_with(key); };
+    if (begins(beginning) && std::none_of(k_in_no_key.begin(), k_in_no_key.end(), begins))
+      lines.push_back(line);
+  }
+  return lines;
+}
+
+/// What two recipes have in common for all images.
+struct Common {
+  bool engine = false;   ///< the program, and what the recipe says of the engine
+  bool target = false;   ///< samples are taken until an error is reached: each image's spp follows
+  bool normals = false;  ///< how models are shaded
+};
+
+Common common_of(const DatasetRecord& a, const DatasetRecord& b) {
+  const auto same = [&](std::string_view beginning) {
+    return lines_of(a.recipe_text, beginning) == lines_of(b.recipe_text, beginning);
+  };
+  Common common;
+  common.target = !lines_of(a.recipe_text, "engine.max_spp ").empty();
+  // Where samples go is decided by the picture as it is developed.
+  common.engine = a.dsbuild_version == b.dsbuild_version && same("engine.") &&
+                  (!common.target || same("outputs.tone_map"));
+  common.normals = same("models.normals ") && same("models.crease_deg ");
+  return common;
+}
+
+/// The parts that differ by themselves. The engine's has the program, whose parts follow from what
+/// the scene and the lens need of it; the model's has what of its file the material reads.
+std::vector<std::string> differing_parts(const ImageRecord& a, const ImageRecord& b,
+                                         const Common& common, bool same_shape) {
+  std::array<bool, k_parts.size()> differs{};
   for (std::size_t i = 0; i < k_parts.size(); ++i)
-    if (a.parts[i] != b.parts[i]) found.parts.emplace_back(k_parts[i]);
+    differs[i] = a.parts[i] != b.parts[i];
+  const auto [model, material, environment, camera, engine] = differs;
+  const bool same_engine = common.engine && a.seed == b.seed && a.width == b.width &&
+                           a.height == b.height && a.math == b.math &&
+                           (common.target || a.spp == b.spp);
+  if (engine && same_engine && (material || environment || camera)) differs[4] = false;
+  const bool same_model =
+      common.normals && same_shape && a.model == b.model && a.pose && a.pose == b.pose;
+  if (model && same_model && material) differs[0] = false;
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i < k_parts.size(); ++i)
+    if (differs[i]) parts.emplace_back(k_parts[i]);
+  return parts;
+}
+
+/// Whether both datasets tell of the same shape of a model.
+bool is_same_shape(const DatasetRecord& a, const DatasetRecord& b, const std::string& model) {
+  const auto in_a = a.shapes.find(model), in_b = b.shapes.find(model);
+  return in_a != a.shapes.end() && in_b != b.shapes.end() && in_a->second == in_b->second;
+}
+
+ChangedImage compare(const ImageRecord& a, const ImageRecord& b, const Common& common,
+                     bool same_shape) {
+  ChangedImage found{&a, &b, differing_parts(a, b, common, same_shape), {}, changed_files(a, b)};
   const std::string line_a = to_json_line(a), line_b = to_json_line(b);
   if (line_a != line_b)
     found.fields = differing_fields(json::parse(line_a), json::parse(line_b), is_of_files);
@@ -69,6 +132,7 @@ DatasetDifference compare_datasets(const DatasetRecord& a, const std::vector<Ima
                                    const DatasetRecord& b,
                                    const std::vector<ImageRecord>& images_b) {
   DatasetDifference found;
+  const Common common = common_of(a, b);
   auto x = images_a.begin();
   auto y = images_b.begin();
   while (x != images_a.end() || y != images_b.end()) {
@@ -77,7 +141,9 @@ DatasetDifference compare_datasets(const DatasetRecord& a, const std::vector<Ima
     } else if (x == images_a.end() || y->id < x->id) {
       found.only_b.push_back(&*y++);
     } else {
-      ChangedImage image = compare(*x++, *y++);
+      ChangedImage image = compare(*x, *y, common, is_same_shape(a, b, x->model));
+      ++x;
+      ++y;
       if (image.parts.empty() && image.fields.empty() && image.files.empty())
         ++found.same;
       else

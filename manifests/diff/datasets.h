@@ -21,7 +21,9 @@ struct ChangedFile {
 struct ChangedImage {
   const ImageRecord* a = nullptr;
   const ImageRecord* b = nullptr;
-  /// Of "model", "material", "environment", "camera", "engine": what its render key is made of.
+  /// Of "model", "material", "environment", "camera", "engine": what its render key is made of. Not
+  /// the engine where only its program is another since the material, environment or lens is, nor
+  /// the model where only what another material reads of it is.
   std::vector<std::string> parts;
   /// Other fields of its line in the manifest, sorted: "class", "split", "seed". Keys, and what is read
   /// off the picture, stand for files and parts that differ and are not named.

@@ -53,6 +53,40 @@ class DiffTest(TinyCase):
         self.assertRegex(text, r"differ in .*engine.*: \d: ")
         self.assertRegex(text, r"  image: \d files, the worst: images/\S+\.png: \d+ of 1024 pixels, largest \S+ at \d+, \d+, RMS ")
 
+    def test_a_material_of_another_program_is_no_engine_and_no_model(self):
+        self.build()
+        # The path tracer of glass is another program; colours of a mesh count where its material reads them.
+        material = self.tiny / "materials/red.mat"
+        for number, text in enumerate(("scene.materials.red.type = glass\n",
+                                       "scene.textures.t.type = hitpointcolor\nscene.materials.red.type = matte\n"
+                                       "scene.materials.red.kd = t\n")):
+            material.write_text(text)
+            other = self.folder / f"other-{number}"
+            self.build(out=other)
+            found = self.diff(self.out, other, "--json", code=1).json
+            self.assertGreater(len(found["changed"]), 0)
+            for image in found["changed"]:
+                self.assertEqual(image["parts"], ["material"])
+            self.assertIn(f"differ in material: {len(found['changed'])}: ", self.diff(self.out, other, code=1).out)
+        deeper = self.folder / "deeper"
+        self.build("--set", "engine.depth_total=5", out=deeper)
+        for image in self.diff(self.out, deeper, "--json", code=1).json["changed"]:
+            self.assertIn("engine", image["parts"])
+
+    def test_what_is_not_there(self):
+        self.build()
+        (self.folder / "empty").mkdir()
+        for a, b, wanted in ((self.out, "nowhere", "diff: wanted B, a recipe, the folder of a dataset or an image file, found nothing "
+                              "at nowhere"),
+                             ("no.png", "no.jpg", "diff: wanted A, a recipe, the folder of a dataset or an image file, found nothing "
+                              "at no.png"),
+                             (self.recipe, self.out, f"diff: wanted A, a dataset that is made, found the recipe {self.recipe}, of which "
+                              f"nothing is built in {self.folder}/out/tiny (name its folder, or dsbuild build it)"),
+                             ("empty", self.out, f"{self.folder}/empty: wanted the folder of a dataset, found one without "
+                              "manifest/images.jsonl")):
+            run = self.diff(a, b, code=2)
+            self.assertEqual(run.err, f"dsbuild: error: {wanted}\n")
+
     def check(self, file, a, b, picture):
         """By hand, from PNG files that another reader decoded."""
         self.assertEqual((a.width, a.height, a.channels), (b.width, b.height, b.channels))

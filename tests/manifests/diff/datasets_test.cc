@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
+
 namespace ds {
 namespace {
 
@@ -56,7 +58,7 @@ TEST(CompareDatasets, NamesPartsFieldsAndFiles) {
   b[2].files.push_back({"c.depth.exr", "depth", {}, {}});
   const DatasetDifference found = compare(a, b);
   ASSERT_EQ(found.changed.size(), 3u);
-  EXPECT_THAT(found.changed[0].parts, ElementsAre("material", "engine"));
+  EXPECT_THAT(found.changed[0].parts, ElementsAre("material"));
   EXPECT_THAT(found.changed[0].fields, IsEmpty());
   ASSERT_EQ(found.changed[0].files.size(), 1u);
   EXPECT_EQ(found.changed[0].files[0].either().kind, "image");
@@ -67,6 +69,81 @@ TEST(CompareDatasets, NamesPartsFieldsAndFiles) {
   ASSERT_EQ(found.changed[2].files.size(), 2u);
   EXPECT_EQ(found.changed[2].files[0].a, nullptr);
   EXPECT_TRUE(found.changed[2].files[1].is_same_picture());
+}
+
+/// Parts named of one image, where these of its key differ.
+std::vector<std::string> parts_named(const std::vector<std::size_t>& differing,
+                                     const DatasetRecord& a, const DatasetRecord& b,
+                                     const std::function<void(ImageRecord&)>& change = {}) {
+  auto images = images_of({"x"});
+  images[0].pose = ModelPose{};
+  auto others = images;
+  for (const std::size_t part : differing)
+    others[0].parts[part] = Hash128{1, 2};
+  if (change) change(others[0]);
+  return compare_datasets(a, images, b, others).changed.at(0).parts;
+}
+
+DatasetRecord dataset_of(const std::string& recipe_text) {
+  DatasetRecord record;
+  record.recipe_text = recipe_text;
+  record.shapes = {{"x", "0123"}};
+  return record;
+}
+
+TEST(CompareDatasets, NamesTheEngineWhereMoreOfItDiffersThanTheProgram) {
+  const std::string settings = "engine.depth_total = 6\nengine.keep_sums = false\nengine.spp = 4\n";
+  const DatasetRecord a = dataset_of(settings);
+  // The program follows from material, environment and lens.
+  for (const std::size_t part : {1U, 2U, 3U})
+    EXPECT_EQ(parts_named({part, 4}, a, a).size(), 1u) << part;
+  EXPECT_THAT(
+      parts_named({1, 4}, a,
+                  dataset_of("engine.depth_total = 6\nengine.keep_sums = true\nengine.spp = 4\n")),
+      ElementsAre("material"));
+  // Not from the model, and by itself it is another dsbuild's.
+  EXPECT_THAT(parts_named({0, 4}, a, a), ElementsAre("model", "engine"));
+  EXPECT_THAT(parts_named({4}, a, a), ElementsAre("engine"));
+  DatasetRecord newer = a;
+  newer.dsbuild_version = "2";
+  EXPECT_THAT(parts_named({1, 4}, a, newer), ElementsAre("material", "engine"));
+  // A setting, of the recipe or of the image.
+  EXPECT_THAT(parts_named({1, 4}, a, dataset_of("engine.depth_total = 7\nengine.spp = 4\n")),
+              ElementsAre("material", "engine"));
+  for (const auto& change : std::vector<std::function<void(ImageRecord&)>>{
+           [](ImageRecord& image) { image.seed = 1; }, [](ImageRecord& image) { image.spp = 1; },
+           [](ImageRecord& image) { image.width = 1; },
+           [](ImageRecord& image) { image.height = 1; },
+           [](ImageRecord& image) { image.math = "fast"; }})
+    EXPECT_THAT(parts_named({1, 4}, a, a, change), ElementsAre("material", "engine"));
+  // With an error to be reached, each image's samples follow, and the tone map says where they go.
+  const std::string target = "engine.error = 0.02\nengine.max_spp = 64\n";
+  EXPECT_THAT(parts_named({1, 4}, dataset_of(target), dataset_of(target),
+                          [](ImageRecord& image) { image.spp = 7; }),
+              ElementsAre("material"));
+  EXPECT_THAT(parts_named({1, 4}, dataset_of(target),
+                          dataset_of(target + "outputs.tone_map = \"linear\"\n")),
+              ElementsAre("material", "engine"));
+  EXPECT_THAT(parts_named({1, 4}, a, dataset_of(settings + "outputs.tone_map = \"linear\"\n")),
+              ElementsAre("material"));
+}
+
+TEST(CompareDatasets, NamesTheModelWhereMoreOfItDiffersThanWhatTheMaterialReads) {
+  const DatasetRecord a = dataset_of("models.normals = \"smooth\"\n");
+  EXPECT_THAT(parts_named({0, 1, 4}, a, a), ElementsAre("material"));
+  EXPECT_THAT(parts_named({0}, a, a), ElementsAre("model"));
+  EXPECT_THAT(parts_named({0, 2}, a, a), ElementsAre("model", "environment"));
+  EXPECT_THAT(parts_named({0, 1}, a, dataset_of("models.normals = \"flat\"\n")),
+              ElementsAre("model", "material"));
+  DatasetRecord other = a;
+  other.shapes = {{"x", "4567"}};
+  EXPECT_THAT(parts_named({0, 1}, a, other), ElementsAre("model", "material"));
+  other.shapes.clear();
+  EXPECT_THAT(parts_named({0, 1}, a, other), ElementsAre("model", "material"));
+  for (const auto& change : std::vector<std::function<void(ImageRecord&)>>{
+           [](ImageRecord& image) { image.pose->model_to_world[3] = 1; },
+           [](ImageRecord& image) { image.pose.reset(); }})
+    EXPECT_THAT(parts_named({0, 1}, a, a, change), ElementsAre("model", "material"));
 }
 
 TEST(CompareDatasets, NamesWhatDiffersInTheDatasetsRecord) {
