@@ -61,7 +61,7 @@ std::unique_ptr<CommandLine> make_command_line() {
   for (const Verb& verb : verbs()) {
     CLI::App* command = app.add_subcommand(verb.name, verb.help);
     for (const Option option : verb.options)
-      add_option(*command, option, line->arguments);
+      add_option(*command, option, *line);
     command->callback([chosen = &line->chosen, &verb] { *chosen = &verb; });
   }
   return line;

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -19,13 +20,15 @@ struct CommandLine {
   Arguments arguments;
   std::string folder;  ///< -C
   const Verb* chosen = nullptr;
+  /// The values there are, of options and arguments that take one of a few words.
+  std::map<const CLI::Option*, std::vector<std::string>> words;
 };
 
 /// Every verb and option. It must outlive what is parsed: options set its members.
 std::unique_ptr<CommandLine> make_command_line();
 
 /// Declares an option of a verb. A value that it does not take throws Error(usage).
-void add_option(CLI::App& verb, Option option, Arguments& to);
+void add_option(CLI::App& verb, Option option, CommandLine& line);
 
 /// Throws Error(usage) for the first word that no verb or option is or takes, in words that help.
 /// CLI11 would first miss what is not there because of it, and name a value without saying what was

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/cmd/command_line.h"
+#include "builder/cmd/shell_text.h"
+#include "builder/cmd/verbs.h"
 #include "manifests/check/check.h"
 #include "manifests/export/exporter.h"
 #include "tracer/base/error.h"
@@ -45,7 +47,7 @@ void add_number(CLI::App& verb, const char* name, T& to, NumberRange range, cons
 }
 
 /// An option whose value is one of a few words.
-void add_word(CLI::App& verb, const char* name, std::string& to,
+void add_word(CommandLine& line, CLI::App& verb, const char* name, std::string& to,
               const std::vector<std::string_view>& known, const char* help) {
   const auto read = [&to, name, known, verb = verb.get_name()](const std::string& text) {
     if (std::find(known.begin(), known.end(), text) == known.end())
@@ -53,7 +55,21 @@ void add_word(CLI::App& verb, const char* name, std::string& to,
            fmt::format("{}", fmt::join(known, " or ")), text, did_you_mean(text, known));
     to = text;
   };
-  verb.add_option_function<std::string>(name, read, help)->type_name("WHAT");
+  const CLI::Option* option =
+      verb.add_option_function<std::string>(name, read, help)->type_name("WHAT");
+  line.words[option].assign(known.begin(), known.end());
+}
+
+std::vector<std::string> strings_of(const std::vector<std::string_view>& texts) {
+  return {texts.begin(), texts.end()};
+}
+
+template <typename Rows>
+std::vector<std::string> names_of(const Rows& rows) {
+  std::vector<std::string> names;
+  for (const auto& row : rows)
+    names.emplace_back(row.name);
+  return names;
 }
 
 /// "coco (COCO: annotations ...); csv (...)".
@@ -67,7 +83,8 @@ std::string names_and_help(const Rows& rows) {
 
 }  // namespace
 
-void add_option(CLI::App& verb, Option option, Arguments& to) {
+void add_option(CLI::App& verb, Option option, CommandLine& line) {
+  Arguments& to = line.arguments;
   switch (option) {
     case Option::target:
       verb.add_option("DATASET", to.target, "recipe, or the folder an earlier build wrote")
@@ -98,7 +115,7 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
       return;
     case Option::import_classes:
       add_word(
-          verb, "--classes", to.import_classes, {"folder", "folders"},
+          line, verb, "--classes", to.import_classes, {"folder", "folders"},
           "where there are no class files: a model's class is the first folder below DIR that it "
           "lies in, or all of them, as vehicle/car [folders]");
       return;
@@ -111,22 +128,27 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
           ->required();
       verb.add_option("IMAGE", to.image, "id (human.ply/0) or file of an image");
       return;
-    case Option::topic:
-      verb.add_option(
+    case Option::topic: {
+      std::vector<std::string>& words = line.words[verb.add_option(
           "TOPIC", to.topic,
           fmt::format("a verb; {}; a section or key of a recipe (camera, camera.fov_deg)",
-                      fmt::join(help_topics(), ", ")));
+                      fmt::join(help_topics(), ", ")))];
+      words = names_of(verbs());
+      for (const std::string_view topic : help_topics())
+        words.emplace_back(topic);
       verb.add_option("NAME", to.topic_name,
                       "one type of the topic (materials glass), or a section or key of a recipe");
       return;
+    }
     case Option::schema:
-      verb.add_option("WHAT", to.schema,
-                      "recipe; images: a line of manifest/images.jsonl; dataset: "
-                      "manifest/dataset.json")
-          ->required();
+      line.words[verb.add_option("WHAT", to.schema,
+                                 "recipe; images: a line of manifest/images.jsonl; dataset: "
+                                 "manifest/dataset.json")
+                     ->required()] = schema_names();
       return;
     case Option::shell_kind:
-      verb.add_option("WHAT", to.shell, "bash, zsh or fish; or man, for man -l")->required();
+      line.words[verb.add_option("WHAT", to.shell, "bash, zsh or fish; or man, for man -l")
+                     ->required()] = strings_of(shell_texts());
       return;
     case Option::init_from:
       verb.add_option("DIR", to.import_from, "folder of models")->required();
@@ -136,10 +158,8 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
           ->type_name("FILE");
       return;
     case Option::store_task:
-      verb.add_option("WHAT", to.store_task,
-                      "stats: what is in it, and for which datasets; gc: remove what none of them "
-                      "names; verify: read every file; gather: take what it has into another")
-          ->required();
+      line.words[verb.add_option("WHAT", to.store_task, names_and_help(store_tasks()))
+                     ->required()] = names_of(store_tasks());
       verb.add_option("STORE", to.target, "its folder, or a dataset that it belongs to")
           ->required();
       verb.add_option("TO", to.other,
@@ -291,9 +311,9 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
                  "trace N images again and compare their bytes");
       return;
     case Option::format:
-      verb.add_option("--format", to.format, names_and_help(exporter_types()))
-          ->required()
-          ->type_name("FORMAT");
+      line.words[verb.add_option("--format", to.format, names_and_help(exporter_types()))
+                     ->required()
+                     ->type_name("FORMAT")] = names_of(exporter_types());
       return;
     case Option::export_folder:
       verb.add_option("-o,--output", to.export_folder,
@@ -337,10 +357,10 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
           ->type_name("KEY=PATTERN");
       return;
     case Option::only:
-      verb.add_option("--only", to.only,
-                      "run this check only (repeatable): " + names_and_help(checks()))
-          ->allow_extra_args(false)
-          ->type_name("CHECK");
+      line.words[verb.add_option("--only", to.only,
+                                 "run this check only (repeatable): " + names_and_help(checks()))
+                     ->allow_extra_args(false)
+                     ->type_name("CHECK")] = names_of(checks());
       return;
     case Option::pictures:
       verb.add_flag("--pictures", to.pictures,
@@ -352,7 +372,7 @@ void add_option(CLI::App& verb, Option option, Arguments& to) {
           ->type_name("FILE");
       return;
     case Option::against:
-      add_word(verb, "--against", to.against, {"minutes", "spp"},
+      add_word(line, verb, "--against", to.against, {"minutes", "spp"},
                "plot against minutes or spp only [both]");
       return;
     case Option::report_size:

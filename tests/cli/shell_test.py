@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """dsbuild completions, init and --version."""
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -32,9 +33,37 @@ class ShellTest(TinyCase):
         self.assertEqual(self.complete("build", "--ke"), ["--keep-going"])
         self.assertEqual(self.complete("-C", "/tmp", "sta"), ["status"])
         self.assertEqual(self.complete("export", "x", "--format", "co"), ["coco"])
-        self.assertEqual(self.complete("store", ""), ["stats", "gc", "verify"])
+        self.assertEqual(self.complete("store", ""), self.store_tasks())
+        self.assertEqual(self.complete("store", "--older", "3d", "ga"), ["gather"])
+        self.assertEqual(self.complete("store", "gather", "ga"), [], "a store is a folder")
+        self.assertEqual(self.complete("import", "--classes", ""), ["folder", "folders"])
+        self.assertEqual(self.complete("schema", ""), ["recipe", "images", "dataset"])
+        self.assertIn("help", self.complete("help", ""))
         self.assertEqual(self.complete("build", ""), [], "file names, which bash adds")
         self.assertEqual(self.complete("build", "x", "-o", ""), [])
+
+    def store_tasks(self):
+        """From what the program says it wants."""
+        run = self.run_it("store", "nothing", self.folder)
+        self.assertEqual(run.code, 2, run)
+        names = re.search(r"wanted ([a-z, ]+), got", run.err).group(1).split(", ")
+        self.assertIn("gather", names)
+        return names
+
+    def test_what_a_store_may_be_asked_is_in_each(self):
+        names = " ".join(self.store_tasks())
+        self.assertIn(f"':WHAT:({names})'", self.text("zsh"))
+        self.assertIn(f"-f -a '{names}'", self.text("fish"))
+        for name in names.split():
+            self.assertRegex(self.text("man"), rf"\b{name} \(")
+        if shutil.which("fish") is None:
+            return
+        (self.folder / "fish").write_text(self.text("fish"))
+        for line, wanted in (("store ", names.split()), ("store ga", ["gather"]), ("schema im", ["images"]), ("help ver", ["verify"]),
+                             ("store gc te", ["tetra.ply"])):
+            run = subprocess.run(["fish", "-c", f"source {self.folder}/fish; complete -C 'dsbuild {line}'"], capture_output=True,
+                                 text=True, check=True, env={**os.environ, "HOME": str(self.folder)}, cwd=self.tiny / "models")
+            self.assertEqual(sorted(word.split("\t")[0] for word in run.stdout.splitlines()), sorted(wanted), line)
 
     def test_every_verb_and_option_is_in_each(self):
         for kind in ("bash", "zsh", "fish", "man"):
