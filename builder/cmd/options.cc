@@ -230,8 +230,10 @@ void add_option(CLI::App& verb, Option option, CommandLine& line) {
                  "shares that are made at once, each by a job of one node [as many as there are]");
       add_number(verb, "--shards", to.shards, {.least = 1, .most = 65536},
                  "shares of the images, each a job of the array [4 a node, or 8]");
-      verb.add_flag("--print", to.print,
-                    "write the script to standard output, which submits itself where it is run");
+      verb.add_flag(
+          "--print", to.print,
+          "write the script to standard output, which submits itself where it is run: as a "
+          "file, or from a pipe into bash");
       verb.add_option("SBATCH", to.sbatch_options,
                       "options of sbatch for all jobs, behind -- (-- --time=2:00:00 --mem=8G)");
       return;
