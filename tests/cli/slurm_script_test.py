@@ -291,7 +291,7 @@ class SlurmScriptTest(TinyCase):
         there = [self.recipe, "-o", self.out, "--store", self.store]
         self.build("--set", "engine.spp=2", out=self.folder / "else", code=0)
         away = (["build", *there], ["clean", self.recipe, "-o", self.out], ["store", "gc", self.store],
-                ["store", "gather", self.folder / "else", self.store])
+                ["store", "gc", "-n", self.store], ["store", "gather", self.folder / "else", self.store])
 
         def refused(why):
             for command in away:

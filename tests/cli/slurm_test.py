@@ -104,6 +104,18 @@ class SlurmTest(TinyCase):
         self.assertEqual(self.traced(), IMAGES)
         self.assert_as_one_build()
 
+    def test_a_printed_script_through_a_pipe(self):
+        script = self.submit("--print", "--nodes", "2", "--shards", "2", settings=SIZE).out
+        run = subprocess.run(["bash"], input=script, env=self.cluster.environment, capture_output=True, text=True, check=False)
+        self.assertEqual((run.returncode, len(run.stdout.split())), (0, 2), run)
+        self.assertEqual(set(run.stdout.split()), {job.split("_")[0] for job in self.cluster.jobs()})
+        wait_for(lambda: not self.cluster.jobs(), 240, self.logs)
+        self.assertEqual(self.traced(), IMAGES, self.logs())
+        self.build(*SIZE, "--store", self.folder / "store-of-one", out=self.folder / "one")
+        self.assertEqual(self.contents(), self.contents(self.folder / "one"))
+        # No mark told of these jobs, so they noted that they made parts, and who works there with a database of its own.
+        self.assertEqual([list((self.store / name).iterdir()) for name in ("parts", "guests")], [[], []])
+
     def test_a_node_dies(self):
         self.submit("--nodes", "2", "--shards", "2")
         wait_for(lambda: self.running("n2"), 60, self.cluster.jobs)
