@@ -2,6 +2,7 @@
 #include "builder/cmd/help_text.h"
 #include "builder/cmd/verbs.h"
 #include "builder/recipe/keys.h"
+#include "builder/recipe/lights.h"
 #include "tracer/base/error.h"
 #include "tracer/base/nearest.h"
 #include "tracer/base/streams.h"
@@ -64,6 +65,19 @@ std::string key_text(const KeySpec& key) {
   return help;
 }
 
+/// Of [[lights]], whose keys are of their types.
+std::string lights_text(const KeySpec& key) {
+  std::vector<HelpRow> rows;
+  for (const LightKeyRow& row : light_key_rows()) {
+    std::string help = fmt::format("({}) {}", row.types, wanted_text(row.key));
+    if (!row.key.unit.empty()) help += fmt::format(" ({})", row.key.unit);
+    if (!row.key.default_value.empty()) help += fmt::format(" [{}]", row.key.default_value);
+    rows.push_back({row.key.name, plain(help + ": " + row.key.help)});
+  }
+  return wrap(fmt::format("[[{}]]: {}", key.name, key.help)) + "\n" +
+         help_rows("type, name, count and", rows);
+}
+
 /// All keys, those of a section ("camera"), or one ("camera.fov_deg").
 std::string recipe_text(const std::string& name) {
   std::vector<HelpRow> rows;
@@ -79,8 +93,13 @@ std::string recipe_text(const std::string& name) {
     names.push_back(key.name);
     if (own != section) close();
     section = own;
-    if (name.empty() || name == own || name == key.name)
+    if (name.empty() || name == own || name == key.name) {
+      if (key.type == KeyType::lights) {
+        text += (text.empty() ? "" : "\n") + lights_text(key);
+        continue;
+      }
       rows.push_back({std::string(key.name.substr(own.size() + 1)), key_text(key)});
+    }
   }
   close();
   if (!text.empty()) return text;

@@ -71,6 +71,12 @@ std::string commented_recipe(const std::string& name, const std::filesystem::pat
       "#   dsbuild build RECIPE -o preview --set 'camera.views=[1]' --set engine.spp=16\n";
   std::string_view section;
   for (const KeySpec& key : recipe_keys()) {
+    if (key.type == KeyType::lights) {
+      section = key.name;
+      text += "\n" + comment(std::string(key.help)) + "#[[lights]]\n#type = \"point\"\n" +
+              "#position_m = { shell = [0.5, 1], elevation_deg = [20, 80] }\n#gain = 5\n";
+      continue;
+    }
     if (const std::string_view own = key.name.substr(0, key.name.find('.')); own != section) {
       section = own;
       text += fmt::format("\n[{}]\n", section);

@@ -9,6 +9,7 @@
 #include "tracer/base/error.h"
 #include "tracer/device/plane_types.h"
 #include "tracer/scene/sdl.h"
+#include "tracer/scene/told_lights.h"
 
 #include <fmt/format.h>
 
@@ -73,9 +74,9 @@ class TracerRenderer : public Renderer {
     SceneUse use;
   };
   std::string name_of(const ImageSpec& image) const {
-    return fmt::format("{}\n{}\n{}\n{}{}{}{}", image.model_file->native(),
+    return fmt::format("{}\n{}\n{}\n{}{}{}{}{}", image.model_file->native(),
                        image.material_file->native(), image.environment_folder->native(),
-                       canonical_change(change_of(image)),
+                       canonical_change(change_of(image)), canonical_lights(image.lights),
                        canonical_model({}, {}, normalise_of(image, recipe_)),
                        canonical_vary(image, recipe_), name_of_distractors(image));
   }

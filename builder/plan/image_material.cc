@@ -122,6 +122,7 @@ Scene scene_without_model(const Recipe& recipe, Inputs& inputs, const ImageSpec&
   gain.turn_deg = 0;
   const Scene& environment = inputs.environment(image.environment_folder);
   Scene scene = gain == EnvironmentChange{} ? environment : changed(environment, gain);
+  scene.lights.insert(scene.lights.end(), image.lights->begin(), image.lights->end());
   for (const Distractor& one : *image.distractors) {
     Scene material = material_of(one, inputs);
     Mesh mesh = stand_in(material);

@@ -8,7 +8,8 @@
 namespace ds {
 
 ImageParts parts_of(const ImageSpec& image, const Recipe& recipe, Inputs& inputs) {
-  ImageParts parts{&inputs.environment(image.environment_folder), change_of(image), {}};
+  ImageParts parts{
+      &inputs.environment(image.environment_folder), change_of(image), {}, image.lights};
   for (const Distractor& one : *image.distractors) {
     parts.objects.push_back({{one.id(), distractor_name(one)},
                              material_of(one, inputs),
@@ -24,6 +25,7 @@ ImageParts parts_of(const ImageSpec& image, const Recipe& recipe, Inputs& inputs
 Scene scene_of(const ImageParts& parts, ModelMeshes& meshes) {
   Scene scene = parts.change == EnvironmentChange{} ? *parts.environment
                                                     : changed(*parts.environment, parts.change);
+  scene.lights.insert(scene.lights.end(), parts.lights.begin(), parts.lights.end());
   for (const ShownObject& object : parts.objects)
     add_object(scene, object.material, meshes.get(object.source), object.called);
   return scene;

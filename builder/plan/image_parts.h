@@ -23,6 +23,7 @@ struct ImageParts {
   const Scene* environment = nullptr;  ///< of the Inputs asked
   EnvironmentChange change;
   std::vector<ShownObject> objects;  ///< the model last
+  std::vector<Light> lights;         ///< beside the environment's
 };
 
 /// Throws where a file cannot be read.

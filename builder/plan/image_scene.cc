@@ -22,6 +22,7 @@ void ImageSettler::place(ImageSpec& image) {
   if (recipe_.camera_fit)
     fit_image(image, recipe_, inputs_.model_sphere(image.model_file, options, image.lowest));
   place_distractors(image, recipe_, inputs_);
+  if (!recipe_.lights.empty()) image.lights = lights_of(image, recipe_);
 }
 
 namespace {

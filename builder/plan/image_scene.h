@@ -19,7 +19,7 @@ struct DrawCounts {
   std::map<std::string, std::uint64_t> rejected;
 };
 
-/// Gives images the places of their models and distractors and the cameras they are made with: those that just show the
+/// Gives images the places of their models and distractors, their lights and the cameras they are made with: those that just show the
 /// model where the recipe wants that, and of the draws the first that camera.keep lets pass.
 class ImageSettler {
  public:

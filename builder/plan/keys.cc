@@ -13,10 +13,12 @@
 #include "tracer/device/plane_types.h"
 #include "tracer/device/program_text.h"
 #include "tracer/device/program_tokens.h"
+#include "tracer/device/scene_effects.h"
 #include "tracer/kernels/layout.h"
 #include "tracer/render/engine_text.h"
 #include "tracer/scene/scene_reads.h"
 #include "tracer/scene/sdl.h"
+#include "tracer/scene/told_lights.h"
 #include "tracer/scene/type_tables.h"
 
 #include <fmt/format.h>
@@ -26,6 +28,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <tuple>
 #include <unordered_map>
@@ -147,13 +150,21 @@ bool is_gained(const ImageSpec& image, const Environment& environment) {
 
 /// All that the kinds of effects in an image depend on; `material` names what of its material does. What constants a
 /// material has is no part of them, so that images with other values of the same properties are of one kind.
-/// `others`: DistractorTexts::programs.
+/// `others`: DistractorTexts::programs. `lit`: kinds_of_lights.
 std::string kind_name(const ImageSpec& image, const Environment& environment, Hash128 material,
-                      const std::string& others) {
-  return fmt::format("{} {} {}{}{}{}", material.hex(), environment.part.hex(),
+                      const std::string& others, const std::string& lit) {
+  return fmt::format("{} {} {}{}{}{}{}{}", material.hex(), environment.part.hex(),
                      image.camera.lens_radius_m > 0 ? "lens" : "pinhole",
                      is_gained(image, environment) ? " gained" : "", others.empty() ? "" : " with ",
-                     others);
+                     others, lit.empty() ? "" : " lit by ", lit);
+}
+
+/// What of the lights beside its environment's an image's program depends on.
+std::string kinds_of_lights(const ImageSpec& image) {
+  std::set<std::string_view> kinds;
+  for (const Light& light : *image.lights)
+    if (shines(light)) kinds.insert(type_of(light).kernel_prefix);
+  return fmt::format("{}", fmt::join(kinds, " "));
 }
 
 }  // namespace
@@ -180,7 +191,7 @@ class KeyMaker::State {
                        const ImageSpec& image);
   std::string text_of_view(const ImageSpec& image) {
     return canonical_camera(image.camera) + canonical_change(change_of(image)) +
-           distractors_.of_picture(image);
+           canonical_lights(image.lights) + distractors_.of_picture(image);
   }
   void add_outputs(ImageKeys& keys, Hash128 colours, Environment& environment, View& view,
                    Kind& kind, const ImageSpec& image);
@@ -194,7 +205,7 @@ class KeyMaker::State {
   NormaliseOptions options_;             ///< and how it is placed
   std::array<std::optional<Hash128>, 8> model_parts_;  ///< by what of the model is read
   std::unordered_map<const void*, Environment> environments_;
-  std::map<std::tuple<const void*, const void*, bool, bool, std::string>, Kind> kinds_;
+  std::map<std::tuple<const void*, const void*, bool, bool, std::string, std::string>, Kind> kinds_;
   DistractorTexts distractors_;
   std::deque<std::pair<SceneEffects, std::string>> programs_;
   TextForm five_, film_sums_, files_;
@@ -273,7 +284,9 @@ View& KeyMaker::State::view_of(Environment& environment, const ImageSpec& image)
 
 /// What views of an image have in common, and what is its own.
 Hash128 KeyMaker::State::view_part(const View& view, const ImageSpec& image) {
-  return image.distractors->empty() ? view.part : hash_text(texts_.fold(text_of_view(image)));
+  return image.distractors->empty() && image.lights->empty()
+             ? view.part
+             : hash_text(texts_.fold(text_of_view(image)));
 }
 
 /// Of what a plane is made from, for an image; `parts`: of its picture.
@@ -330,9 +343,9 @@ Hash128 KeyMaker::State::program_hash(const ImageSpec& image, const std::string&
 
 Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& environment) {
   const bool lens = image.camera.lens_radius_m > 0;
-  const std::string others = distractors_.programs(image);
+  const std::string others = distractors_.programs(image), lit = kinds_of_lights(image);
   Kind& kind = kinds_[{image.material_file.identity(), image.environment_folder.identity(), lens,
-                       is_gained(image, environment), others}];
+                       is_gained(image, environment), others, lit}];
   if (kind.made && same_but_seed(kind.settings, image.engine)) return kind;
   EngineSettings settings = image.engine;
   settings.seed = 0;
@@ -350,7 +363,7 @@ Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& enviro
   kind.files_part = texts_.add(kind.files);
   const bool own = shows_own(image);
   const Hash128 program_name = own ? program_name_of(material) : kind.material_part;
-  const std::string of = kind_name(image, environment, program_name, others);
+  const std::string of = kind_name(image, environment, program_name, others, lit);
   kind.program = program_hash(image, of);
   kind.engine =
       TextForm(canonical_engine(settings, TextSet::k_reference + kind.program.hex()), {"seed"});

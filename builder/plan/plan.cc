@@ -310,6 +310,9 @@ namespace {
 std::pair<std::string, PropertyChange> of_its_part(const char* part, PropertyChange change) {
   constexpr std::string_view k_of_environment = "environments.";
   if (change.name.starts_with("distractors[")) return {"distractors", std::move(change)};
+  constexpr std::string_view k_lights = "lights.lights[";
+  if (part == std::string_view("camera") && change.name.starts_with(k_lights))
+    return {"lights", {change.name.substr(sizeof "lights." - 1), change.before, change.after}};
   if (!change.name.starts_with(k_of_environment)) return {part, std::move(change)};
   change.name.erase(0, k_of_environment.size());
   return {"environment", std::move(change)};

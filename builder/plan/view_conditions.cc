@@ -17,6 +17,8 @@
 #include <array>
 #include <charconv>
 #include <limits>
+#include <optional>
+#include <span>
 #include <utility>
 
 namespace ds {
@@ -78,6 +80,25 @@ double scale_of(const Mat4& m) {
   return length(m.direction({1, 0, 0}));
 }
 
+/// Where a light stands; nothing for one that is everywhere or very far.
+std::optional<Vec3d> place_of(const Light& light) {
+  for (const kernels::LightInput& input : type_of(light).host.inputs)
+    if (input.value == kernels::LightValue::point)
+      return to_double(light_vector(light, input.name));
+  return std::nullopt;
+}
+
+/// Of where lights stand; "" where none stands anywhere.
+std::string canonical_places(const std::vector<Light>& lights) {
+  CanonicalText text;
+  for (const Light& light : lights)
+    if (const auto place = place_of(light)) {
+      const double numbers[] = {place->x, place->y, place->z};
+      text.add(light.name, std::span<const double>(numbers));
+    }
+  return text.text();
+}
+
 std::string text_of(const Rejection& rejection) {
   return fmt::format("{} {}", rejection.value, rejection.condition);
 }
@@ -107,7 +128,8 @@ Rejection ViewConditions::reject(const ImageSpec& image) {
       hash_text(text.text() + canonical_turn(change_of(image)) + canonical_camera(image.camera) +
                 canonical_model(inputs_.model_hashes(image.model_file), {},
                                 normalise_of(image, recipe_)) +
-                DistractorTexts(recipe_, inputs_).of_plane(image, plane_type("mask")))
+                DistractorTexts(recipe_, inputs_).of_plane(image, plane_type("mask")) +
+                (keep.clearance_m > 0 ? canonical_places(image.lights) : ""))
           .hex();
   if (const auto known = inputs_.find_known(question))
     if (const auto rejection = rejection_from(*known)) return *rejection;
@@ -198,10 +220,20 @@ Rejection ViewConditions::look(const ImageSpec& image) {
   if (is_inside(model.tree, to_model.point(camera))) return {"inside", 0};
   if (keep.clearance_m > 0) {
     const double scale = scale_of(to_model);
-    const double nearest = environment.distance(
-        to_environment.point(camera),
-        model.tree.distance(to_model.point(camera), keep.clearance_m * scale) / scale);
-    if (nearest < keep.clearance_m) return {"clearance_m", nearest};
+    const auto nearest = [&](Vec3d p) {
+      return environment.distance(
+          to_environment.point(p),
+          model.tree.distance(to_model.point(p), keep.clearance_m * scale) / scale);
+    };
+    if (const double found = nearest(camera); found < keep.clearance_m)
+      return {"clearance_m", found};
+    for (const Light& light : *image.lights) {
+      const auto place = place_of(light);
+      if (!place) continue;
+      if (is_inside(model.tree, to_model.point(*place))) return {"clearance_m", 0};
+      if (const double found = nearest(*place); found < keep.clearance_m)
+        return {"clearance_m", found};
+    }
   }
   if (!(keep.visible > 0)) return {};
   const std::array<double, 16> pose = camera_pose(image.camera);

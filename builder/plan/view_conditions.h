@@ -27,7 +27,8 @@ struct Rejection {
 /// beside or behind the camera. visible: of the rays through the middles of 64 x 64 fields of the picture
 /// that meet the model alone, those before which nothing of the environment lies that cameras see, and no
 /// distractor; 0 where
-/// none meets it. clearance_m: from the camera to the nearest of either. inside: the camera is where three
+/// none meets it. clearance_m: from the camera, and each of the recipe's lights that stands somewhere, to the
+/// nearest of either; 0 of a light in the model. inside: the camera is where three
 /// rays leave the model by an odd number of surfaces.
 ///
 /// What was found out is kept in the database by all it depends on.

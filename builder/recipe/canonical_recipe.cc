@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/recipe/canonical_recipe.h"
 
+#include "builder/recipe/lights.h"
+
 #include <fmt/format.h>
 
 #include <optional>
@@ -70,6 +72,8 @@ std::vector<std::pair<std::string, std::string>> canonical_settings(const Settin
     const RecipeValue* value = settings.find(key.name);
     if (const auto text = own_text(key, recipe)) {
       lines.emplace_back(key.name, *text);
+    } else if (key.type == KeyType::lights) {
+      lines.emplace_back(key.name, canonical_light_list(*value));
     } else if (value != nullptr && key.type != KeyType::path && settings.applies(key)) {
       lines.emplace_back(key.name,
                          to_toml(is_number_type(key.type) ? with_numbers(*value) : *value));

@@ -237,6 +237,10 @@ constexpr std::array k_own_keys = {
             "temperature, of luminance 1: 3000 is warm, 6500 nearly as it is, 10000 bluish. false: "
             "as it is"},
 
+    KeySpec{"lights", scene, lights, "", "[]", k_any, "", "",
+            "Lights beside the environment's, each a table [[lights]] of what stands below; see "
+            "Lights"},
+
     KeySpec{"camera.set", images, choice, "", "\"half-dodecahedron\"", k_any,
             R"("half-dodecahedron" | "list" | "orbit" | "hemisphere" | "random")", "",
             "Where the cameras stand: see Cameras in recipes/README.md"},
@@ -289,7 +293,8 @@ constexpr std::array k_own_keys = {
             "Least share of the model that nothing may hide, of what of it is in the picture; told "
             "by 64 x 64 rays"},
     KeySpec{"camera.keep.clearance_m", scene, number, "m", "0", between(0, k_far_m), "", "",
-            "Least distance of the camera from model and environment. With any of the three above "
+            "Least distance of the camera, and of each of [[lights]] that stands somewhere, from "
+            "model and environment. With any of the three above "
             "0 the camera must not be inside the model either"},
     KeySpec{"camera.keep.tries", images, integer, "", "64", between(1, 10000), "", "",
             "Most draws of an image until its view is kept; without one the image is an error of "

@@ -25,6 +25,7 @@ enum class KeyType {
   quaternion,    ///< four numbers, not all 0: w, x, y, z
   point_list,
   patterns,  ///< a table of patterns of properties and what is drawn for each
+  lights,    ///< a list of tables, each with keys of its own: lights.h
 };
 
 using KeyRange = NumberRange;

@@ -6,6 +6,7 @@
 #include "builder/recipe/canonical_recipe.h"
 #include "builder/recipe/classes.h"
 #include "builder/recipe/distractors.h"
+#include "builder/recipe/lights.h"
 #include "builder/recipe/planes.h"
 #include "builder/recipe/settings.h"
 #include "builder/recipe/splits.h"
@@ -194,6 +195,7 @@ Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrid
   recipe.drawn = drawn_of(settings);
   recipe.distractors.drawn = take_draws_of_each(recipe.drawn);
   read_vary(settings, recipe);
+  read_recipe_lights(settings, recipe);
   CameraViews views = make_cameras(settings, recipe.constants);
   recipe.camera_set = std::move(views.set);
   recipe.cameras = std::move(views.cameras);

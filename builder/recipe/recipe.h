@@ -4,6 +4,7 @@
 #include "builder/recipe/camera_fit.h"
 #include "builder/recipe/camera_sets.h"
 #include "builder/recipe/distractors.h"
+#include "builder/recipe/lights.h"
 #include "builder/recipe/shared.h"
 #include "builder/recipe/variables.h"
 #include "manifests/classification.h"
@@ -142,6 +143,7 @@ struct Recipe {
   CameraSet camera_set;
   KeepSettings keep;
   DistractorSettings distractors;
+  std::vector<RecipeLight> lights;
   Variables constants;       ///< of what is not drawn
   std::vector<Drawn> drawn;  ///< by key
   std::vector<VaryPattern> vary;
@@ -188,6 +190,7 @@ struct ImageSpec {
   Shared<ImageVariables> variables;
   Shared<std::vector<Distractor>> distractors;  ///< those that found a place; where settled
   int unplaced = 0;                             ///< how many found none
+  Shared<std::vector<Light>> lights;            ///< beside the environment's; where settled
   double lowest = 0;                  ///< of its model, as lowest_of has it; known where settled
   EngineSettings engine;              ///< with this image's own seed, below 2^53
   Shared<std::string> class_path;     ///< "vehicle/car", "" where unclassified

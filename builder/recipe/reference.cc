@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/recipe/keys.h"
+#include "builder/recipe/lights.h"
 #include "builder/recipe/planes.h"
 #include "builder/recipe/variables.h"
 #include "tracer/scene/mesh_formats.h"
@@ -40,6 +41,8 @@ std::string_view type_text(KeyType type) {
       return "a list of four numbers";
     case KeyType::point_list:
       return "a list of lists of three numbers";
+    case KeyType::lights:
+      return "a list of tables";
     case KeyType::patterns:
       return "a table of patterns, each = a number, a list of three, or a distribution";
   }
@@ -133,6 +136,13 @@ std::string recipe_reference() {
   std::string_view section;
   for (const KeySpec& key : recipe_keys()) {
     const std::string_view own = key.name.substr(0, key.name.find('.'));
+    if (key.type == KeyType::lights) {
+      section = own;
+      text += fmt::format(
+          "\n### [[{}]]\n\n{}. They move pictures, and with `camera.keep.clearance_m` views.\n\n{}",
+          own, key.help, light_reference());
+      continue;
+    }
     if (own != section) {
       section = own;
       text += fmt::format(

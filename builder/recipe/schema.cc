@@ -2,8 +2,10 @@
 #include "builder/recipe/schema.h"
 
 #include "builder/recipe/keys.h"
+#include "builder/recipe/lights.h"
 #include "builder/recipe/value.h"
 #include "builder/recipe/variables.h"
+#include "tracer/scene/told_lights.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -32,6 +34,68 @@ json numbers_in(const KeyRange& range, std::size_t count) {
   json list = list_of(number_in("number", range));
   list["minItems"] = list["maxItems"] = count;
   return list;
+}
+
+json to_json(const RecipeValue& value) {
+  if (const auto* text = value.text()) return *text;
+  if (const auto* flag = value.boolean()) return *flag;
+  if (const auto* whole = value.integer()) return *whole;
+  if (value.is_number()) return value.number();
+  if (value.table() != nullptr) return json::object();  // a default's is empty
+  json list = json::array();
+  if (const auto* array = value.array())
+    for (const RecipeValue& element : *array)
+      list.push_back(to_json(element));
+  return list;
+}
+
+/// A value of one, or a distribution.
+json schema_of(const LightKey& key) {
+  json constant = number_in("number", key.range);
+  std::string_view drawn = "number";
+  json schema;
+  switch (key.use) {
+    case LightUse::flag:
+      schema["type"] = "boolean";
+      break;
+    case LightUse::colour:
+    case LightUse::point:
+    case LightUse::source:
+      drawn = key.use == LightUse::colour ? "colour" : "point";
+      constant = numbers_in(key.range, 3);
+      [[fallthrough]];
+    default:
+      schema["anyOf"] = {constant, {{"$ref", fmt::format("#/$defs/{}", drawn)}}};
+  }
+  if (key.use == LightUse::temperature) schema["anyOf"].push_back({{"const", false}});
+  schema["description"] = key.unit.empty() ? key.help : fmt::format("{} ({})", key.help, key.unit);
+  if (!key.default_value.empty()) schema["default"] = to_json(parse_value(key.default_value));
+  return schema;
+}
+
+/// An entry of [[lights]], of any type.
+json light_schema() {
+  json types = json::array();
+  for (const SdlTypeRow* type : told_light_types()) {
+    json properties{{"type", {{"const", type->name}}},
+                    {"name", {{"type", "string"}, {"pattern", "^[A-Za-z0-9_-]+$"}}},
+                    {"count",
+                     {{"anyOf",
+                       {number_in("integer", {.least = 0, .most = k_most_lights}),
+                        {{"$ref", "#/$defs/integer"}}}},
+                      {"default", 1}}}};
+    json required{"type"};
+    for (const LightKey& key : light_keys(type->name)) {
+      properties[key.name] = schema_of(key);
+      if (key.default_value.empty()) required.push_back(key.name);
+    }
+    types.push_back({{"type", "object"},
+                     {"description", type->help},
+                     {"properties", properties},
+                     {"required", required},
+                     {"additionalProperties", false}});
+  }
+  return {{"anyOf", types}};
 }
 
 /// Null for a key that has literals alone.
@@ -68,21 +132,10 @@ json type_schema(const KeySpec& key) {
         each["anyOf"].push_back({{"$ref", fmt::format("#/$defs/{}", name_of(kind))}});
       return {{"type", "object"}, {"additionalProperties", each}};
     }
+    case KeyType::lights:
+      return list_of(light_schema());
   }
   return nullptr;
-}
-
-json to_json(const RecipeValue& value) {
-  if (const auto* text = value.text()) return *text;
-  if (const auto* flag = value.boolean()) return *flag;
-  if (const auto* whole = value.integer()) return *whole;
-  if (value.is_number()) return value.number();
-  if (value.table() != nullptr) return json::object();  // a default's is empty
-  json list = json::array();
-  if (const auto* array = value.array())
-    for (const RecipeValue& element : *array)
-      list.push_back(to_json(element));
-  return list;
 }
 
 json literals_of(const KeySpec& key) {

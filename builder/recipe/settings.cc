@@ -76,6 +76,8 @@ const RecipeValue* unfit_part(const KeySpec& key, const RecipeValue& value) {
       return first_unfit(value, [&](const RecipeValue& v) { return is_list_of(3, key, v); });
     case KeyType::patterns:
       return all_or_nothing(value.table() != nullptr);
+    case KeyType::lights:
+      return first_unfit(value, [](const RecipeValue& v) { return v.table() != nullptr; });
   }
   return &value;
 }

@@ -198,6 +198,11 @@ std::vector<Flip> Moving::flips() const {
       {"environments.turn_deg", "0", "30"},
       {"environments.gain", "1", "2"},
       {"environments.temperature_k", "false", "3000"},
+      // Those that stand too near are drawn again, and the view with them.
+      {"lights",
+       "[{type=\"point\",position_m=[0,0,5]}]",
+       "[{type=\"point\",position_m={box=[[-0.1,-0.1,-0.05],[0.1,0.1,0.2]]}}]",
+       {"camera.keep.clearance_m=0.04", "camera.azimuth_deg={uniform=[0,360]}"}},
       {"camera.keep.in_frame", "0", "1", {"camera.target={ball=0.12}"}},
       {"camera.keep.visible", "0", "0.5", {k_sunk}},
       {"camera.keep.clearance_m", "0", "0.2", {"camera.distance_m={uniform=[0.2,0.4]}"}},

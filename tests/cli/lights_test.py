@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Lights of a recipe: what they shed on a floor, by the inverse square law and what the manifest says was drawn."""
+import json
+import math
+
+import image_reader
+from harness import IMAGES, TinyCase, main
+
+LIGHTS = """
+[[lights]]
+type = "point"
+count = { integer = [1, 2] }
+position_m = { shell = [0.4, 0.8], elevation_deg = [30, 80] }
+gain = { log_uniform = [1, 20] }
+color = { hsv = [[0, 1], [0.2, 0.9], [0.5, 1]] }
+
+[[lights]]
+type = "sharpdistant"
+name = "sun"
+from = { sphere = 2, elevation_deg = [20, 70] }
+gain = { uniform = [0.5, 1] }
+"""
+SETTINGS = ["--set", 'outputs.planes=["mask", "position", "geometry_normal", "direct_diffuse"]', "--set", "engine.spp=16",
+            "--set", "engine.filter_width=1"]
+KD = 0.5  # of the floor
+MODEL_RADIUS = 0.14  # no model of this dataset leaves a ball of this radius around the origin
+
+
+def less(a, b):
+    return [x - y for x, y in zip(a, b)]
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def scaled(a, by):
+    return [x * by for x in a]
+
+
+def passes_model(point, way, far):
+    """Whether a segment of `far` metres from the point stays out of the ball around the model."""
+    along = min(max(-dot(point, way), 0), far)
+    nearest = [p + w * along for p, w in zip(point, way)]
+    return math.sqrt(dot(nearest, nearest)) > MODEL_RADIUS
+
+
+class LightsTest(TinyCase):
+    def setUp(self):
+        super().setUp()
+        self.edit("environments/floor/environment.scn", "scene.lights.sky.color = 1.0 1.0 1.0",
+                  "scene.lights.sky.color = 0 0 0")
+        text = self.recipe.read_text().replace('dir = "environments"', 'files = ["environments/floor"]')
+        self.recipe.write_text(text + LIGHTS)
+
+    def records(self):
+        return [json.loads(line) for line in (self.out / "manifest/images.jsonl").read_text().splitlines()]
+
+    def plane(self, record, kind):
+        path = self.out / next(file["path"] for file in record["files"] if file["kind"] == kind)
+        if path.suffix == ".png":
+            return image_reader.read_png(path)[4]
+        channels = image_reader.read_exr(path)[2]
+        return list(zip(*(channels[name] for name in "RGB")))
+
+    def irradiance(self, draws, point, normal):
+        """Of the point by each channel; None where the model may stand before a light."""
+        found = [0.0, 0.0, 0.0]
+        for name in ["lights[0]", "lights[0][1]"][:draws["lights[0].count"]]:
+            way = less(draws[f"{name}.position_m"], point)
+            far = math.sqrt(dot(way, way))
+            way = scaled(way, 1 / far)
+            if not passes_model(point, way, far):
+                return None
+            # A gain is what goes to all sides.
+            share = draws[f"{name}.gain"] / (4 * math.pi) * max(dot(way, normal), 0) / far ** 2
+            found = [f + share * c for f, c in zip(found, draws[f"{name}.color"])]
+        way = scaled(draws["lights[sun].from"], 0.5)
+        self.assertAlmostEqual(dot(way, way), 1, places=6)
+        if not passes_model(point, way, 1e3):
+            return None
+        return [f + draws["lights[sun].gain"] * max(dot(way, normal), 0) for f in found]
+
+    def test_a_floor_is_as_light_as_what_was_drawn_makes_it(self):
+        self.build(*SETTINGS, "--set", "engine.width=96", "--set", "engine.height=96")
+        for record in self.records():
+            mask, position = self.plane(record, "mask"), self.plane(record, "position")
+            normal, light = self.plane(record, "geometry_normal"), self.plane(record, "direct_diffuse")
+            width = record["width"]
+            shares = [[], [], []]
+            for i in range(width + 1, len(mask) - width - 1, 5):
+                around = [i + dx + dy * width for dx in (-1, 0, 1) for dy in (-1, 0, 1)]
+                # At outlines a pixel shows two things.
+                if any(mask[j] or normal[j] == (0, 0, 0) for j in around):
+                    continue
+                falls = self.irradiance(record["draws"], position[i], normal[i])
+                if falls is None:
+                    continue
+                for channel in range(3):
+                    right = KD / math.pi * falls[channel]
+                    shares[channel].append(light[i][channel] / right)
+                    # Each sample asks one of the lights, by chance.
+                    self.assertAlmostEqual(shares[channel][-1], 1, delta=0.5, msg=(record["id"], i))
+            for of_channel in shares:
+                self.assertGreater(len(of_channel), 300)
+                self.assertAlmostEqual(sum(of_channel) / len(of_channel), 1, delta=0.01, msg=record["id"])
+
+    def test_what_is_drawn_is_in_manifest_plan_and_explain_and_moves_nothing_else(self):
+        self.build(*SETTINGS)
+        told = json.loads((self.out / "manifest/dataset.json").read_text())
+        self.assertEqual(told["draws"]["lights[0].gain"]["distribution"], "{log_uniform = [1.0, 20.0]}")
+        self.assertEqual(told["draws"]["lights[sun].gain"]["count"], IMAGES)
+        self.assertIn('name = "sun"', told["recipe"])
+        run = self.run_it("plan", self.recipe, "-o", self.out, "--draws", *SETTINGS)
+        self.assertIn("lights[0].position_m", run.out, run)
+        # One more that stands nowhere yet, before the others' end: nothing to do but the manifest.
+        self.recipe.write_text(self.recipe.read_text() + '\n[[lights]]\ntype = "point"\nposition_m = [0, 0, 1]\ncount = 0\n')
+        self.assert_counts(self.build(*SETTINGS), built=0, reused=IMAGES)
+        self.recipe.write_text(self.recipe.read_text().replace("count = 0", "count = { choice = [0, 1] }"))
+        shown = sum(record["draws"]["lights[2].count"] for record in self.records_of_plan())
+        self.assertTrue(0 < shown < IMAGES, shown)
+        run = self.run_it("build", "-n", self.recipe, "-o", self.out, *SETTINGS)
+        self.assertIn("lights changed: lights[2].type: added", run.out, run)
+        counts = self.build(*SETTINGS)
+        self.assert_counts(counts, built=shown, reused=IMAGES - shown)
+
+    def records_of_plan(self):
+        """Lines of a dataset elsewhere, of this recipe as it is now."""
+        out, self.out = self.out, self.folder / "other"
+        try:
+            self.build(*SETTINGS)
+            return self.records()
+        finally:
+            self.out = out
+
+    def test_a_sun_below_the_horizon_is_an_error_of_its_image(self):
+        text = self.recipe.read_text()
+        self.recipe.write_text(text[:text.index("\n[[lights]]")] +
+                               '\n[[lights]]\ntype = "sun"\ngain = 1e-5\nfrom = { choice = [[0, 1, 1], [0, 1, -1]] }\n')
+        run = self.run_it("build", self.recipe, "-o", self.out, "-k", "--json")
+        self.assertEqual(run.code, 1, run)
+        self.assertIn("lights[0].dir: wanted a sun above the horizon", run.err)
+        self.assertTrue(0 < run.json["failed"] < IMAGES, run)
+        self.assertEqual(run.json["failed"] + run.json["built"], IMAGES)
+
+    def test_help_and_schema_know_them(self):
+        text = self.run_it("help", "recipe", "lights").out
+        for word in ("position_m", "temperature_k", "coneangle", "theta", "(point, spot)"):
+            self.assertIn(word, text)
+        schema = json.loads(self.run_it("schema", "recipe").out)
+        kinds = [one["properties"]["type"]["const"] for one in schema["properties"]["lights"]["items"]["anyOf"]]
+        self.assertIn("spot", kinds)
+        self.assertNotIn("infinite", kinds)
+
+
+if __name__ == "__main__":
+    main()
