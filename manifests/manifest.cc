@@ -194,6 +194,10 @@ json to_json_value(const DatasetRecord& dataset) {
          "[least, most] of the model file's coordinates; box_m around its eight corners in the "
          "world"}}}};
   if (!dataset.about.empty()) object["about"] = dataset.about;
+  for (const SourceRecord& source : dataset.sources)
+    object["sources"].push_back({{"url", source.url.empty() ? json() : json(source.url)},
+                                 {"text", source.text},
+                                 {"assets", source.assets}});
   if (!dataset.shapes.empty()) object["shapes"] = dataset.shapes;
   if (!dataset.own_materials.empty()) object["own_materials"] = dataset.own_materials;
   if (!dataset.hierarchies.empty()) object["hierarchies"] = dataset.hierarchies;

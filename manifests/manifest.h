@@ -7,6 +7,7 @@
 #include "manifests/licences.h"
 #include "manifests/model_pose.h"
 #include "manifests/pixel_counts.h"
+#include "manifests/sources.h"
 #include "tracer/base/hash.h"
 #include "tracer/render/render.h"
 #include "tracer/scene/mesh.h"
@@ -45,7 +46,7 @@ namespace ds {
 inline constexpr int k_manifest_format = 2;
 /// Counts up when lines or dataset.json gain a field, so that a build writes them anew. Readers need not
 /// know it.
-inline constexpr int k_manifest_fields = 5;
+inline constexpr int k_manifest_fields = 6;
 
 /// One file of a dataset.
 struct FileRecord {
@@ -130,6 +131,8 @@ struct DatasetRecord {
   std::map<std::string, std::vector<std::string>> hierarchies{};
   std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< "images", "models", "train", ...
   std::vector<LicenceRecord> licences;  ///< found beside the assets, as group_licences gives them
+  /// Likewise, as group_sources gives them. Not there where there are none.
+  std::vector<SourceRecord> sources{};
   /// By key, of the images listed. Not there where the recipe has no distribution.
   DrawSummaries draws{};
   /// By name, of the files beside the picture. Not there where there are none.

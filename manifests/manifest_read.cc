@@ -294,28 +294,51 @@ std::vector<LicenceRecord> licences_of_format_1(Fields& fields, const json& owne
   return group_licences(texts);
 }
 
-std::vector<LicenceRecord> licences_from(Fields& fields, const SourcePlace& place,
-                                         Diagnostics& diagnostics) {
-  const json* list = fields.find("licences");
-  if (list == nullptr) return {};
-  if (!list->is_array()) {
-    fields.wrong("licences", "a list", *list);
-    return {};
-  }
-  std::vector<LicenceRecord> licences;
+/// Calls add(members) for each object of a list that may be missing.
+template <typename Add>
+void read_list(Fields& fields, const char* name, const SourcePlace& place, Diagnostics& diagnostics,
+               const Add& add) {
+  const json* list = fields.find(name);
+  if (list == nullptr) return;
+  if (!list->is_array()) return fields.wrong(name, "a list", *list);
   for (const json& value : *list) {
     if (!value.is_object()) {
-      fields.wrong("licences", "objects", value);
+      fields.wrong(name, "objects", value);
       continue;
     }
-    LicenceRecord& licence = licences.emplace_back();
     Fields members(value, place, diagnostics);
-    if (const json* spdx = members.find("spdx"); spdx != nullptr && !spdx->is_null())
-      members.text("spdx", licence.spdx);
+    add(members);
+  }
+}
+
+/// A text, or null for none.
+void read_text_or_null(Fields& fields, const char* name, std::string& to) {
+  if (const json* text = fields.find(name); text != nullptr && !text->is_null())
+    fields.text(name, to);
+}
+
+std::vector<LicenceRecord> licences_from(Fields& fields, const SourcePlace& place,
+                                         Diagnostics& diagnostics) {
+  std::vector<LicenceRecord> licences;
+  read_list(fields, "licences", place, diagnostics, [&](Fields& members) {
+    LicenceRecord& licence = licences.emplace_back();
+    read_text_or_null(members, "spdx", licence.spdx);
     members.text("text", licence.text);
     read_texts(members, "assets", licence.assets);
-  }
+  });
   return licences;
+}
+
+std::vector<SourceRecord> sources_from(Fields& fields, const SourcePlace& place,
+                                       Diagnostics& diagnostics) {
+  std::vector<SourceRecord> sources;
+  read_list(fields, "sources", place, diagnostics, [&](Fields& members) {
+    SourceRecord& source = sources.emplace_back();
+    read_text_or_null(members, "url", source.url);
+    members.text("text", source.text);
+    read_texts(members, "assets", source.assets);
+  });
+  return sources;
 }
 
 /// Not there where no model was mended.
@@ -440,6 +463,7 @@ DatasetRecord dataset_from_json(const std::string& text, const std::string& file
                  [](Fields& f, const char* name, std::uint64_t& to) { f.count(name, to); });
     dataset.licences = format == 1 ? licences_of_format_1(fields, *object, place, diagnostics)
                                    : licences_from(fields, place, diagnostics);
+    if (object->contains("sources")) dataset.sources = sources_from(fields, place, diagnostics);
     fields.object("draws", dataset.draws, draw_summaries_from);
     read_planes(*object, place, diagnostics, dataset);
     read_mended_models(*object, place, diagnostics, dataset);

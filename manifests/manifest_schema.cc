@@ -222,6 +222,11 @@ json dataset_schema() {
        {{"type", "array"},
         {"items", object_of({{"spdx", or_null(k_text)}, {"text", k_text}, {"assets", texts}},
                             {"spdx", "text", "assets"})}}},
+      {"sources",
+       said({{"type", "array"},
+             {"items", object_of({{"url", or_null(k_text)}, {"text", k_text}, {"assets", texts}},
+                                 {"url", "text", "assets"})}},
+            "where assets come from, as the SOURCE files beside them say")},
       {"conventions", map_of(k_text)},
       {"draws", map_of(object_of({{"distribution", said(k_text, "TOML")},
                                   {"count", k_count},
@@ -235,7 +240,7 @@ json dataset_schema() {
                                     {"count", "of", "examples"}))},
       {"mended_models", map_of(map_of(k_count))}};
   json required = fields_of(fields, {"about", "shapes", "own_materials", "hierarchies", "draws",
-                                     "planes", "concerns", "mended_models"});
+                                     "planes", "concerns", "mended_models", "sources"});
   return headed(object_of(std::move(fields), std::move(required)),
                 "manifest/dataset.json of a dataset of dsbuild");
 }

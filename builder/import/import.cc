@@ -270,14 +270,15 @@ void Import::copy_models() const {
     for (const fs::path& part : model_parts(model->file))
       copy_file_atomic(part, to.parent_path() / part.lexically_relative(model->file.parent_path()));
     if (own_.contains(model)) copy_own(model->file, to);
-    // What a licence beside it says holds of the copy too.
+    // What a licence or source beside it says holds of the copy too.
     if (!folders.insert(model->file.parent_path()).second) continue;
     std::error_code error;
     for (fs::directory_iterator at(model->file.parent_path(), error), end; !error && at != end;
          at.increment(error)) {
       const std::string name = at->path().filename().string();
       std::error_code ignored;
-      if ((name.starts_with("LICEN") || name.starts_with("COPYING")) &&
+      if ((name.starts_with("LICEN") || name.starts_with("COPYING") ||
+           name.starts_with("SOURCE")) &&
           fs::is_regular_file(at->path(), ignored))
         copy_file_atomic(at->path(), to.parent_path() / name);
     }
@@ -291,7 +292,8 @@ void Import::copy_assets() const {
       if (entry.is_regular_file())
         copy_file_atomic(entry.path(),
                          place(kind) / entry.path().lexically_relative(assets / kind));
-    copy_file_atomic(assets / "LICENSE", place(kind) / "LICENSE");
+    for (const char* text : {"LICENSE", "SOURCE"})
+      copy_file_atomic(assets / text, place(kind) / text);
   }
 }
 

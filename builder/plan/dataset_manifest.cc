@@ -239,11 +239,15 @@ DatasetRecord dataset_record(const Recipe& recipe, const Plan& plan,
     if (models.contains(model)) record.shapes.emplace(model, shape);
   for (const auto& [model, names] : plan.own_materials)
     if (shown.contains(model)) record.own_materials.emplace(model, names);
-  std::vector<std::pair<std::string, std::string>> texts;
-  for (const auto& [kind, assets] : licensed_assets(recipe))
+  std::vector<std::pair<std::string, std::string>> texts, sources;
+  for (const auto& [kind, assets] : licensed_assets(recipe)) {
     for (auto& licence : licences_beside(kind, assets))
       texts.push_back(std::move(licence));
+    for (auto& source : sources_beside(kind, assets))
+      sources.push_back(std::move(source));
+  }
   record.licences = group_licences(texts);
+  record.sources = group_sources(sources);
   record.concerns = dataset_concerns(recipe, plan.concerns, images, pending);
   return record;
 }

@@ -18,9 +18,13 @@ using NamedAssets = std::vector<std::pair<std::string, std::filesystem::path>>;
 /// licences are, is a warning and none: it costs nobody a dataset.
 std::vector<std::pair<std::string, std::string>> licences_beside(const std::string& kind,
                                                                  const NamedAssets& assets);
+/// Likewise of the texts that say where assets come from: SOURCE, SOURCE.txt.
+std::vector<std::pair<std::string, std::string>> sources_beside(const std::string& kind,
+                                                                const NamedAssets& assets);
 /// By kind: "models", "materials", "environments".
 std::vector<std::pair<std::string, NamedAssets>> licensed_assets(const Recipe& recipe);
-/// Throws Error(recipe) where dataset.unlicensed = "error" and an asset has no licence.
+/// Throws Error(recipe) where dataset.unlicensed = "error" and an asset has no licence, or
+/// dataset.unsourced = "error" and one has no source.
 void check_licensed(const Recipe& recipe);
 
 }  // namespace ds

@@ -202,11 +202,13 @@ std::map<std::string, std::string> settings_of(const std::string& recipe_text) {
   return settings;
 }
 
-std::map<std::string, std::string> licence_texts(const DatasetRecord& record) {
+/// Of licences or sources, by asset.
+template <typename Records>
+std::map<std::string, std::string> texts_of(const Records& records) {
   std::map<std::string, std::string> texts;
-  for (const LicenceRecord& licence : record.licences)
-    for (const std::string& asset : licence.assets)
-      texts[asset] += licence.text;
+  for (const auto& record : records)
+    for (const std::string& asset : record.assets)
+      texts[asset] += record.text;
   return texts;
 }
 
@@ -249,7 +251,9 @@ void compare_datasets(const DatasetRecord& before, const DatasetRecord& after,
   if (before.name != after.name) behind.push_back("name: " + change(before.name, after.name));
   if (before.licence != after.licence)
     behind.push_back("licence: " + change(before.licence, after.licence));
-  add_named(behind, "licence texts", differing(licence_texts(before), licence_texts(after)));
+  add_named(behind, "licence texts",
+            differing(texts_of(before.licences), texts_of(after.licences)));
+  add_named(behind, "sources", differing(texts_of(before.sources), texts_of(after.sources)));
   add_named(behind, "class ids", differing(class_ids(before), class_ids(after)));
   add_named(behind, "shapes", differing(before.shapes, after.shapes));
   add_named(behind, "own materials", differing(before.own_materials, after.own_materials));

@@ -101,8 +101,8 @@ bool is_remark(const fs::path& path) {
   std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   return name.starts_with("LICENSE") || name.starts_with("LICENCE") ||
-         name.starts_with("COPYING") || name.starts_with("NOTICE") || name.starts_with("README") ||
-         name.ends_with(".CLA");
+         name.starts_with("COPYING") || name.starts_with("NOTICE") || name == "SOURCE" ||
+         name == "SOURCE.TXT" || name.starts_with("README") || name.ends_with(".CLA");
 }
 
 /// Looks into a folder, in the order of names, and with `recursive` into those in it, links

@@ -52,6 +52,9 @@ constexpr std::array k_own_keys = {
         "dataset.unlicensed", manifest, choice, "", "\"keep\"", k_any, R"("keep" | "error")", "",
         "Models, materials and environments with no licence beside them: build with them, and say "
         "so in exports, or fail"},
+    KeySpec{
+        "dataset.unsourced", manifest, choice, "", "\"keep\"", k_any, R"("keep" | "error")", "",
+        "Likewise of those with no source beside them: a SOURCE file that says whence they are"},
     KeySpec{"dataset.description", manifest, text, "", "\"\"", k_any, "", "",
             "What it is, for the manifest and what exports say of it, as the next five"},
     KeySpec{"dataset.creator", manifest, text, "", "\"\"", k_any, "", "", "Who made it"},

@@ -183,6 +183,7 @@ Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrid
   recipe.seed = static_cast<std::uint64_t>(*settings.find("dataset.seed")->integer());
   recipe.licence = settings.text("dataset.licence");
   recipe.refuses_unlicensed = settings.text("dataset.unlicensed") == "error";
+  recipe.refuses_unsourced = settings.text("dataset.unsourced") == "error";
   recipe.about = read_about(settings);
   recipe.models = find_models(settings);
   recipe.materials = find_materials(settings);

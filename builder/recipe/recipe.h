@@ -116,6 +116,7 @@ struct Recipe {
   std::uint64_t seed = 0;
   std::string licence;
   bool refuses_unlicensed = false;           ///< dataset.unlicensed
+  bool refuses_unsourced = false;            ///< dataset.unsourced
   std::map<std::string, std::string> about;  ///< dataset.description, ... by name; those given
   std::vector<ModelFile> models;             ///< sorted by name, which no two share
   /// Material files, sorted by name, which no two share.

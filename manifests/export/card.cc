@@ -158,6 +158,23 @@ std::string licences_text(const ExportInput& input) {
   return text;
 }
 
+/// Addresses and the first line of what stands beside assets: all of it is in the manifest.
+std::string sources_text(const ExportInput& input) {
+  const DatasetRecord& dataset = input.dataset;
+  if (dataset.sources.empty()) return "";
+  std::string text = "\n## Sources\n\n";
+  for (const SourceRecord& source : dataset.sources) {
+    std::string line = source.text.substr(0, source.text.find_first_of("\r\n"));
+    if (!source.url.empty() && line.find(source.url) == line.npos) line += " " + source.url;
+    text += fmt::format("- {}: {}\n", fmt::join(source.assets, ", "), line);
+  }
+  if (!input.unsourced.empty())
+    text += fmt::format("- no source stands beside {}: {}\n",
+                        input.unsourced.size() == 1 ? "this" : "these",
+                        fmt::join(input.unsourced, ", "));
+  return text;
+}
+
 std::string body(const ExportInput& input, const ExporterType& type, const ExportFolder& to) {
   const DatasetRecord& dataset = input.dataset;
   std::string text =
@@ -175,7 +192,7 @@ std::string body(const ExportInput& input, const ExporterType& type, const Expor
   text +=
       "World: right-handed, z up, metres. Cameras: x right, y down, z forward; pixel centres at "
       ".5.\n";
-  text += notes_text(input, to) + licences_text(input);
+  text += notes_text(input, to) + licences_text(input) + sources_text(input);
   if (const auto cite = dataset.about.find("cite"); cite != dataset.about.end())
     text += fmt::format("\n## How to cite\n\n```\n{}\n```\n", cite->second);
   text += fmt::format(

@@ -145,6 +145,17 @@ void add_making(json& object, const ExportInput& input) {
       {"prov:label", maker + " with the recipe of xxh128 " + hash_text(dataset.recipe_text).hex()}};
 }
 
+/// What the pictures were made from.
+void add_sources(json& object, const DatasetRecord& dataset) {
+  for (const SourceRecord& source : dataset.sources) {
+    json work{{"@type", "sc:CreativeWork"},
+              {"name", fmt::format("{}", fmt::join(source.assets, ", "))},
+              {"description", source.text}};
+    if (!source.url.empty()) work["url"] = source.url;
+    object["isBasedOn"].push_back(std::move(work));
+  }
+}
+
 class Croissant : public Exporter {
  public:
   Croissant(const ExportInput& input, ExportFolder& to)
@@ -194,6 +205,7 @@ class Croissant : public Exporter {
     if (const auto at = dataset.about.find("creator"); at != dataset.about.end())
       object["creator"] = {{"@type", "sc:Organization"}, {"name", at->second}};
     add_making(object, input_);
+    add_sources(object, dataset);
     to_.write("croissant.json", canonical_json(object, 1));
   }
 

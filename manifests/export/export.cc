@@ -7,6 +7,7 @@
 #include "manifests/export/exporter.h"
 #include "manifests/json_text.h"
 #include "manifests/manifest_glance.h"
+#include "manifests/shown_assets.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
 #include "tracer/base/hash_stream.h"
@@ -99,8 +100,6 @@ class Export {
   void add_key(const ImageRecord& image);
   void find_shared_names();
   std::string key_of(const ImageRecord& image) const;
-  /// A file of the licences' list may have an ending that the manifest leaves out.
-  bool is_licensed(const std::string& asset) const;
   /// Says which of the dataset's files the format has no place for.
   void note_kinds(ExportFolder& to) const;
   std::string record(const ExportFolder& to) const;
@@ -114,7 +113,8 @@ class Export {
   std::map<std::string, std::string> models_;  ///< by what their images' keys begin with
   std::set<std::string> shared_stems_;         ///< of several models
   std::set<std::string> shared_names_;         ///< models of one name, though with their endings
-  std::set<std::string> licensed_, unlicensed_;
+  AssetNames licensed_, sourced_;
+  std::set<std::string> unlicensed_, unsourced_;
   std::uint64_t objects_ = 0;  ///< that images show beside their models
   ExportResult result_;
 };
@@ -211,7 +211,9 @@ void Export::look() {
   });
   has_splits_ = !splits_.empty();
   for (const LicenceRecord& licence : input_.dataset.licences)
-    licensed_.insert(licence.assets.begin(), licence.assets.end());
+    licensed_.add(licence.assets);
+  for (const SourceRecord& source : input_.dataset.sources)
+    sourced_.add(source.assets);
   for (const std::string& split : request_.splits)
     if (!splits_.contains(split))
       fail(ErrorKind::usage, "--split: wanted {}, got {}",
@@ -230,12 +232,10 @@ void Export::look() {
     const std::string size = fmt::format("{} x {}", image.width, image.height);
     objects_ += image.objects.size();
     input_.size = input_.size.empty() || input_.size == size ? size : "of several sizes";
-    for (const std::string& asset : {"models/" + image.model, "materials/" + image.material,
-                                     "environments/" + image.environment})
-      if (!is_licensed(asset)) unlicensed_.insert(asset);
-    for (const ObjectRecord& object : image.objects)
-      for (const std::string& asset : {"models/" + object.model, "materials/" + object.material})
-        if (!is_licensed(asset)) unlicensed_.insert(asset);
+    for (const std::string& asset : shown_assets(image, input_.dataset)) {
+      if (!licensed_.has(asset)) unlicensed_.insert(asset);
+      if (!sourced_.has(asset)) unsourced_.insert(asset);
+    }
     add_key(image);
     std::vector<std::string> own;
     for (const FileRecord& file : image.files)
@@ -244,6 +244,7 @@ void Export::look() {
     kinds = own;
   });
   input_.unlicensed.assign(unlicensed_.begin(), unlicensed_.end());
+  input_.unsourced.assign(unsourced_.begin(), unsourced_.end());
   input_.left_out = result_.left_out;
   for (const auto& [key, pattern] : request_.filters)
     input_.filters.push_back(fmt::format("{}={}", key, pattern));
@@ -323,12 +324,6 @@ void Export::find_shared_names() {
     const auto [at, is_new] = models.try_emplace(name, image.model);
     if (!is_new && at->second != image.model) shared_names_.insert({at->second, image.model});
   });
-}
-
-bool Export::is_licensed(const std::string& asset) const {
-  if (licensed_.contains(asset)) return true;
-  const auto at = licensed_.lower_bound(asset + ".");
-  return at != licensed_.end() && at->starts_with(asset + ".");
 }
 
 std::string Export::key_of(const ImageRecord& image) const {

@@ -47,6 +47,7 @@ struct ExportInput {
       counts;                                     ///< images by class and split
   std::map<std::string, std::uint64_t> left_out;  ///< images that are not exported, by why
   std::vector<std::string> unlicensed;  ///< models, materials, environments without a licence
+  std::vector<std::string> unsourced;   ///< likewise, of which nothing says where they come from
   std::vector<std::string> filters;     ///< "class=vehicle/*", "split=test": what was asked for
   std::string size;                     ///< "256 x 256", or "of several sizes"
   std::function<FileMesh(const ImageRecord&)> mesh;  ///< as in ExportRequest

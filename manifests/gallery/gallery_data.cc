@@ -207,6 +207,9 @@ void write_gallery_data(const GalleryFacts& facts, const std::vector<std::string
     meta["planes"][name] = plane.convention;
   for (const LicenceRecord& licence : facts.dataset.licences)
     meta["licences"].push_back({{"spdx", licence.spdx}, {"assets", licence.assets}});
+  for (const SourceRecord& source : facts.dataset.sources)
+    meta["sources"].push_back(
+        {{"url", source.url}, {"text", source.text}, {"assets", source.assets}});
   write("data/meta.js", fmt::format("gallery.meta({});\n", canonical_json(meta)));
 }
 

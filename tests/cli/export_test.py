@@ -235,6 +235,32 @@ class ExportTest(TinyCase):
             (self.tiny / folder / "LICENSE").write_text("SPDX-License-Identifier: MIT\n")
         self.assert_counts(self.build(*strict), traced=0)
 
+    def test_sources_go_along_and_may_be_wanted(self):
+        strict = ["--set", "dataset.unsourced=error"]
+        run = self.run_it("plan", self.recipe, "-o", self.out, *strict)
+        self.assertEqual(run.code, 2, run)
+        self.assertIn('dataset.unsourced = "error" wants a source beside every asset, found none for models/box.off, '
+                      "models/tetra.ply, materials/green.mat and 3 more: put a SOURCE file", run.err)
+        (self.tiny / "models/SOURCE.txt").write_text("Solids of Plato, https://example.org/solids.\nFound 2026.\n")
+        self.assertIn("found none for materials/green.mat", self.run_it("plan", self.recipe, "-o", self.out, *strict).err)
+        self.build()
+        self.assertIn("sources", [finding["check"] for finding in self.run_it("check", self.out, "--json").json["findings"]])
+        (self.tiny / "SOURCE").write_text("by hand\n")
+        run = self.run_it("build", "-n", self.recipe, "-o", self.out)
+        self.assertIn("sources: environments/floor, environments/plain, materials/green.mat, materials/red.mat", run.out + run.err)
+        self.assert_counts(self.build(*strict), built=0, reused=IMAGES)
+        told = json.loads((self.out / "manifest/dataset.json").read_text())["sources"]
+        models = {"url": "https://example.org/solids", "assets": ["models/box.off", "models/tetra.ply"],
+                  "text": "Solids of Plato, https://example.org/solids.\nFound 2026.\n"}
+        self.assertIn(models, told)
+        self.assertEqual([(one["url"], len(one["assets"])) for one in told if one != models], [(None, 4)])
+        self.assertNotIn("sources", [f["check"] for f in self.run_it("check", self.out, "--json").json["findings"]])
+        self.export("croissant")
+        self.assertIn("- models/box.off, models/tetra.ply: Solids of Plato, https://example.org/solids.\n",
+                      (self.to / "README.md").read_text())
+        based = json.loads((self.to / "croissant.json").read_text())["isBasedOn"]
+        self.assertIn("https://example.org/solids", [one.get("url") for one in based])
+
     def test_nerf(self):
         """A point of the world lands on one pixel by the manifest's pose and by the scene's."""
         told = self.export("nerf")

@@ -171,6 +171,7 @@ jpeg_quality = { integer = [60, 95] }
                          [("orthographic", None, 0.25 / 32)] * (IMAGES // 2))
 
     def test_croissant(self):
+        (self.tiny / "SOURCE").write_text("Solids of https://example.org/solids\n")
         self.build("--set", 'dataset.cite="Solids"', "--set", 'dataset.published="2026-11-27"')
         self.export("croissant")
         dataset = mlcroissant.Dataset(jsonld=str(self.to / "croissant.json"))

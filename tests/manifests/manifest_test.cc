@@ -96,6 +96,8 @@ class ManifestTest : public testing::Test {
     dataset_.licences = {
         {"CC0-1.0", "CC0 1.0 Universal\n", {"environments/studio", "models/mug.ply"}},
         {"", "all mine", {"materials/red-plastic.mat"}}};
+    dataset_.sources = {{"https://a.org", "from https://a.org", {"models/mug.ply"}},
+                        {"", "by hand", {"materials/red-plastic.mat"}}};
   }
 
   std::string read(const std::string& path) const { return read_text_file(folder_ / path); }
@@ -195,6 +197,17 @@ TEST_F(ManifestTest, NamesMendedModelsAndOnlyThose) {
   EXPECT_THROW(dataset_from_json(wrong.dump(), "d"), Error);
   wrong["mended_models"] = nlohmann::json::array();
   EXPECT_THROW(dataset_from_json(wrong.dump(), "d"), Error);
+}
+
+TEST_F(ManifestTest, HoldsSources) {
+  auto object = nlohmann::json::parse(to_json(dataset_));
+  EXPECT_EQ(object["sources"][0]["url"], "https://a.org");
+  EXPECT_TRUE(object["sources"][1]["url"].is_null());
+  EXPECT_EQ(dataset_from_json(object.dump(), "d").sources, dataset_.sources);
+  object["sources"] = "https://a.org";
+  EXPECT_THROW(dataset_from_json(object.dump(), "d"), Error);
+  object.erase("sources");
+  EXPECT_TRUE(dataset_from_json(object.dump(), "d").sources.empty());
 }
 
 TEST_F(ManifestTest, HoldsEachLicenceOnce) {

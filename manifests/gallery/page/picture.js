@@ -155,8 +155,11 @@ function factRows(line) {
   for (const object of line.objects || [])
     rows.push([`object ${object.id}`, [object.model, object.class_path, object.material, object.visible_fraction === undefined ? '' : `${percent(object.visible_fraction)} visible`].filter(text => text).join(', '), []]);
   for (const [name, value] of Object.entries(line.draws || {})) rows.push([`drawn: ${name}`, Array.isArray(value) ? vector(value) : String(value), []]);
-  const licences = (data.meta.licences || []).filter(licence => licence.assets.some(asset => [`models/${line.model}`, `materials/${line.material}`, `environments/${line.environment}`].some(own => asset === own || asset.startsWith(`${own}.`))));
+  const assets = [`models/${line.model}`, `materials/${line.material}`, `environments/${line.environment}`];
+  const ofAssets = records => (records || []).filter(record => record.assets.some(asset => assets.some(own => asset === own || asset.startsWith(`${own}.`))));
+  const licences = ofAssets(data.meta.licences);
   rows.push(['licences', [...new Set(licences.map(licence => licence.spdx || 'no SPDX id'))].join(', '), []]);
+  rows.push(['sources', ofAssets(data.meta.sources).map(source => source.url || source.text.trim().split('\n')[0]).join('\n'), []]);
   rows.push(['render key', line.render_key, [copy(line.render_key)]]);
   for (const file of line.files) rows.push([file.kind, `${file.path}\n${file.xxh128}`, [copy(file.path)]]);
   const explain = `dsbuild explain . ${shellWord(line.id)}`;

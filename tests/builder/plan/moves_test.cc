@@ -45,6 +45,7 @@ class Moving : public TinyDataset {
     put("all.cla", "PSB 1\n1 2\n\nthing 0 2\nbox\ntetra\n");
     put("ids.txt", "other\nthing\n");
     put("LICENSE", "for models, materials and environments\n");
+    put("SOURCE", "made for tests\n");
     put("box.cla", "PSB 1\n1 1\n\nthing 0 1\nbox\n");
     std::filesystem::create_directories(recipe_folder() / "models/more");
     std::filesystem::copy(recipe_folder() / "models/box.off",
@@ -141,6 +142,7 @@ std::vector<Flip> Moving::flips() const {
       {"dataset.seed", "1", "2"},
       {"dataset.licence", "\"\"", "\"CC0-1.0\""},
       {"dataset.unlicensed", "\"keep\"", "\"error\""},
+      {"dataset.unsourced", "\"keep\"", "\"error\""},
       {"dataset.description", "\"\"", "\"text\""},
       {"dataset.creator", "\"\"", "\"text\""},
       {"dataset.url", "\"\"", "\"text\""},

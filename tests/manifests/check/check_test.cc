@@ -343,5 +343,31 @@ TEST(Checks, MissingLicences) {
     EXPECT_EQ(finding.advice.find("CC"), std::string::npos) << "no licence is proposed";
 }
 
+TEST(Checks, AssetsWithoutLicenceOrSource) {
+  CheckInput input = clean();
+  std::vector<std::string> assets{"environments/e0", "environments/e1", "materials/m0.mat",
+                                  "materials/m1.mat", "materials/m2.mat"};
+  for (const ImageRecord& image : input.images)
+    assets.push_back("models/" + image.model);
+  input.dataset.licences[0].assets = input.dataset.sources.emplace_back().assets = assets;
+  for (const char* check : {"licences", "sources"})
+    EXPECT_THAT(run_checks(input, {check}), IsEmpty()) << check;
+  // One model and one material of 29 things: eight models of the material, and one of the others.
+  std::erase(assets, "models/car0.ply");
+  std::erase(assets, "materials/m1.mat");
+  input.dataset.licences[0].assets = input.dataset.sources[0].assets = assets;
+  for (const char* check : {"licences", "sources"}) {
+    const std::vector<CheckFinding> all = run_checks(input, {check});
+    ASSERT_EQ(all.size(), 1U) << check;
+    EXPECT_EQ(all[0].level, CheckLevel::note);
+    EXPECT_EQ(all[0].count, 2U);
+    EXPECT_EQ(all[0].of, 24U + 3 + 2);
+    EXPECT_THAT(all[0].examples, ElementsAre("materials/m1", "models/car0.ply"));
+    EXPECT_EQ(all[0].images.size(), (8U + 1) * 2);
+  }
+  input.dataset.sources.clear();
+  EXPECT_EQ(run_checks(input, {"sources"})[0].count, 29U);
+}
+
 }  // namespace
 }  // namespace ds
