@@ -7,8 +7,11 @@
 #include "tracer/base/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <mutex>
+#include <string>
 #include <utility>
 
 namespace ds {
@@ -160,30 +163,89 @@ bool are_alike(const PictureFacts& a, const PictureFacts& b, double distance) {
   return true;
 }
 
+namespace {
+
+std::optional<DecodedImage> read_kind(const std::filesystem::path& folder, const ImageRecord& image,
+                                      std::string_view kind) {
+  for (const FileRecord& file : image.files) {
+    if (file.kind != kind) continue;
+    const std::filesystem::path path = folder / file.path;
+    const std::string bytes = read_image_file(path);
+    return decode_image_bytes(bytes_of(bytes), path.string(), Halves::widen);
+  }
+  return std::nullopt;
+}
+
+/// Nothing for an image without depth, mask and pose.
+std::optional<DepthView> read_depths(const std::filesystem::path& folder,
+                                     const ImageRecord& image) {
+  if (!image.pose || (!image.intrinsics && !image.metres_per_pixel)) return std::nullopt;
+  const auto depth = read_kind(folder, image, "depth");
+  const auto mask = depth ? read_kind(folder, image, "mask") : std::nullopt;
+  if (!mask) return std::nullopt;
+  const std::size_t pixels =
+      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  const auto is_right = [&](const DecodedImage& one) {
+    return one.width == image.width && one.height == image.height;
+  };
+  if (!is_right(*depth) || !is_right(*mask))
+    fail(ErrorKind::asset, "{}: depth and mask must be {} x {} as the manifest says", image.id,
+         image.width, image.height);
+  DepthView view{&image, std::vector<float>(pixels), std::vector<std::uint8_t>(pixels)};
+  // Whole numbers are millimetres.
+  const double unit = depth->type == SampleType::uint16 ? 65.535 : 1;
+  const ImageSamples depths(*depth), seen(*mask);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    view.depth[i] =
+        static_cast<float>(depths[i * static_cast<std::size_t>(depth->channels)] * unit);
+    view.mask[i] = seen[i * static_cast<std::size_t>(mask->channels)] > 0 ? 1 : 0;
+  }
+  return view;
+}
+
+/// Of each image the next one of the same model at the same place, round the list; itself where it is alone.
+std::vector<std::size_t> other_views(const std::vector<ImageRecord>& images) {
+  std::map<std::pair<std::string, std::array<double, 16>>, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < images.size(); ++i)
+    if (images[i].pose) groups[{images[i].model, images[i].pose->model_to_world}].push_back(i);
+  std::vector<std::size_t> others(images.size());
+  for (std::size_t i = 0; i < images.size(); ++i)
+    others[i] = i;
+  for (const auto& [place, group] : groups)
+    for (std::size_t i = 0; i < group.size(); ++i)
+      others[group[i]] = group[(i + 1) % group.size()];
+  return others;
+}
+
+}  // namespace
+
 std::vector<std::optional<PictureFacts>> read_picture_facts(
     const std::filesystem::path& folder, const std::vector<ImageRecord>& images,
     const std::function<void(const std::string& why)>& failed,
     const std::function<void(std::uint64_t done, std::uint64_t all)>& done) {
   std::vector<std::optional<PictureFacts>> facts(images.size());
+  const std::vector<std::size_t> others = other_views(images);
   std::mutex mutex;
   std::uint64_t finished = 0;
-  const auto read = [&](const ImageRecord& image,
-                        std::string_view kind) -> std::optional<DecodedImage> {
-    for (const FileRecord& file : image.files) {
-      if (file.kind != kind) continue;
-      const std::filesystem::path path = folder / file.path;
-      const std::string bytes = read_image_file(path);
-      return decode_image_bytes(bytes_of(bytes), path.string(), Halves::widen);
+  const auto look = [&](std::size_t i) {
+    const auto picture = read_kind(folder, images[i], "image");
+    if (!picture) return;
+    const auto mask = read_kind(folder, images[i], "mask");
+    facts[i] = facts_of(*picture, mask ? &*mask : nullptr);
+    const auto own = read_depths(folder, images[i]);
+    if (!own) return;
+    std::optional<DepthView> other;
+    try {
+      if (others[i] != i) other = read_depths(folder, images[others[i]]);
+    } catch (const Error&) {  // told where that image is looked at
     }
-    return std::nullopt;
+    facts[i]->depth = depth_facts(*own, other ? &*other : nullptr);
   };
   parallel_ranges(images.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       std::string why;
       try {
-        const auto picture = read(images[i], "image");
-        const auto mask = picture ? read(images[i], "mask") : std::nullopt;
-        if (picture) facts[i] = facts_of(*picture, mask ? &*mask : nullptr);
+        look(i);
       } catch (const Error& error) {
         why = error.what();
       }

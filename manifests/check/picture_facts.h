@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "manifests/check/depth_facts.h"
 #include "manifests/manifest.h"
 #include "tracer/render/image_files.h"
 
@@ -31,6 +32,8 @@ struct PictureFacts {
   /// Mean over places where the mask's edge crosses a row or a column of the largest channel's
   /// |a - b|, one pixel inside the edge and one outside; absent where there is no edge or no mask.
   std::optional<double> edge_contrast{};
+  /// Absent where the image has no depth, no mask or no pose.
+  std::optional<DepthFacts> depth{};
 };
 
 /// `mask`: of the same size, one channel, 0 where the model is not seen; or nothing.

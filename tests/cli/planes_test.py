@@ -87,6 +87,30 @@ class PlanesTest(TinyCase):
             self.assertAlmostEqual(record["visible_fraction"], counts["model"] / counts["amodal"])
         self.assertEqual(ids, {0, 1, 40000})
 
+    def test_check_finds_depths_and_poses_that_are_not_of_one_picture(self):
+        def findings():
+            run = self.run_it("check", self.out, "--pictures", "--only", "depths", "--only", "poses", "--json")
+            return {one["check"] for one in run.json["findings"]}
+
+        for encoding in ("depth", "depth:half", "depth:png16"):
+            self.build(*planes("mask", encoding))
+            self.assertEqual(findings(), set(), encoding)
+        records = self.records()
+        one, other = (self.out / file["path"] for record in records[:2] for file in record["files"] if file["kind"] == "depth")
+        one.chmod(0o644), other.chmod(0o644)
+        first, second = one.read_bytes(), other.read_bytes()
+        one.unlink(), other.unlink()
+        one.write_bytes(second), other.write_bytes(first)
+        self.assertEqual(findings(), {"depths"})
+        one.write_bytes(first), other.write_bytes(second)
+        self.assertEqual(findings(), set())
+        lines = (self.out / "manifest/images.jsonl").read_text().splitlines()
+        moved = json.loads(lines[0])
+        moved["model_to_world"][0][3] += 0.1
+        (self.out / "manifest/images.jsonl").unlink()
+        (self.out / "manifest/images.jsonl").write_text("\n".join([json.dumps(moved), *lines[1:]]) + "\n")
+        self.assertEqual(findings(), {"depths", "poses"})
+
     def test_encodings_hold_the_same_numbers(self):
         self.build(*planes(*FLOATS))
         other, deep = self.folder / "half", self.folder / "png"
