@@ -295,6 +295,7 @@ int run_build(const Arguments& arguments) {
   told["lacking"] = to_json(all_lacking);
   told["edited_files"] = plan.edited.size();
   told["strict_errors"] = concerns;
+  told["uneven"] = tell_uneven(dataset.recipe, plan);
   if (brought.result) told["gathered"] = to_json(*brought.result);
   if (arguments.json)
     print_json(told);

@@ -3,6 +3,7 @@
 
 #include "builder/cmd/grammar.h"
 #include "builder/plan/dataset_concerns.h"
+#include "builder/plan/evenness.h"
 #include "tracer/base/error.h"
 #include "tracer/base/log.h"
 #include "tracer/base/streams.h"
@@ -140,6 +141,21 @@ std::vector<Concern> tell_planned_concerns(const Recipe& recipe, const Plan& pla
     if (concern.count > 0 && !text_of(concern).said && !is_allowed(concern, recipe.coverage))
       warn(to_text(concern) + remedy(concern, recipe) + way_out(concern));
   return concerns;
+}
+
+nlohmann::json tell_uneven(const Recipe& recipe, const Plan& plan) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Uneven& uneven : find_uneven(recipe, plan)) {
+    say(Stream::people, "{}\n", to_text(uneven));
+    nlohmann::json one{
+        {"kind", uneven.kind}, {"classes", uneven.classes}, {"classes_lacking", uneven.lacking}};
+    if (!uneven.most.empty())
+      one.update({{"split", uneven.split},
+                  {"most", {{"name", uneven.most}, {"share", uneven.most_share}}},
+                  {"least", {{"name", uneven.least}, {"share", uneven.least_share}}}});
+    list.push_back(std::move(one));
+  }
+  return list;
 }
 
 }  // namespace ds

@@ -27,4 +27,7 @@ std::size_t tell_concerns(const std::vector<Concern>& concerns, const Recipe& re
 /// are one on some disks, classes and splits that no image will be of. Returns them all.
 std::vector<Concern> tell_planned_concerns(const Recipe& recipe, const Plan& plan);
 
+/// Tells where chance dealt materials or environments out unevenly, and returns that: for "uneven" of --json.
+nlohmann::json tell_uneven(const Recipe& recipe, const Plan& plan);
+
 }  // namespace ds

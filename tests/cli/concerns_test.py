@@ -217,6 +217,27 @@ class ConcernsTest(TinyCase):
         self.concerns("--strict", code=1)
         self.assertEqual(self.concerns("--set", "classes.unshared=keep", "--strict")[1].count("warning"), 0)
 
+    def test_what_chance_dealt_out_unevenly_is_said_at_the_end(self):
+        """Two models in two materials: one each is even, and of both in one the other is never shown."""
+        told = {}
+        for seed in range(12):
+            out = self.folder / f"seed{seed}"
+            args = ["--set", f"dataset.seed={seed}", "--set", "materials.assign=random", "--set", "camera.views=[0]"]
+            run = self.run_it("build", self.recipe, "-o", out, "--json", *args)
+            self.assertEqual(run.code, 0, run)
+            lines = (out / "manifest/images.jsonl").read_text().splitlines()
+            shown = {json.loads(line)["material"] for line in lines}
+            told[len(shown)] = run
+            self.assertEqual(len(run.json["uneven"]), 2 - len(shown), run)
+            if len(told) == 2:
+                break
+        self.assertEqual(set(told), {1, 2})
+        [uneven] = told[1].json["uneven"]
+        self.assertEqual((uneven["kind"], uneven["most"]["share"], uneven["least"]["share"]), ("materials", 1, 0))
+        self.assertIn("materials fall unevenly: 100 % ", told[1].err)
+        self.assertIn('(50 % each would be even); materials.assign = "balanced" evens them out', told[1].err)
+        self.assertNotIn("unevenly", told[2].err)
+
     def test_entries_that_mean_several_files(self):
         """box in one format is for training, in another for the test: whoever lists the stem says it of both."""
         shutil.copy(self.tiny / "models/tetra.ply", self.tiny / "models/box.ply")
