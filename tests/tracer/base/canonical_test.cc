@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <random>
 
 namespace ds {
 namespace {
@@ -16,6 +20,23 @@ TEST(CanonicalTest, hex_floats_are_exact) {
   EXPECT_EQ(hex_float(0.75f), "0x1.8p-1");
   EXPECT_NE(hex_float(0.0f), hex_float(-0.0f));
   EXPECT_EQ(hex_float(std::numeric_limits<double>::quiet_NaN()), "nan");
+}
+
+TEST(CanonicalTest, hex_floats_are_those_of_c) {
+  const auto expect_same = [](double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%a", value);
+    EXPECT_EQ(hex_float(value), text);
+  };
+  for (const double value : {0.0, -0.0, 1.0, -1.0, 0.1, 5e-324, -2.3e-308, 2.2250738585072014e-308,
+                             1.7976931348623157e308, 1e-310, 4096.0, 1.0625})
+    expect_same(value);
+  std::mt19937_64 random(7);
+  for (int i = 0; i < 20000; ++i)
+    if (const auto value = std::bit_cast<double>(random()); std::isfinite(value)) {
+      expect_same(value);
+      expect_same(double{static_cast<float>(i) / 7});
+    }
 }
 
 TEST(CanonicalTest, an_entry_is_one_line_and_reads_back) {
