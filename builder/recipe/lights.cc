@@ -234,7 +234,7 @@ void tell(ToldLight& told, const LightSetting& setting, const DrawnValue& value,
       break;
     case LightUse::source:
       // A scene file has the way light goes, or for the sun where that stands.
-      add(setting.key.property == "direction" ? three * -1 : three);
+      add(setting.key.property == "direction" ? Vec3d{} - three : three);
       break;
     case LightUse::gain:
       gain = gain * value[0];

@@ -139,7 +139,7 @@ TEST_F(RecipeReadTest, ReportsAllFindingsWithTheirPlacesInTheirOrder) {
                              "[environments]\n"                       // 14
                              "files = [\"places/garden\",\n"          // 15
                              "  \"places/textures\"]\n"               // 16
-                             "[lights]\n"                             // 17
+                             "[fogbanks]\n"                           // 17
                              "[outputs]\n"                            // 18
                              "depth = true\n"),
       "r.toml:2:11: camera.fov_deg must be a number in (0, 180), got 190\n"
@@ -151,9 +151,9 @@ TEST_F(RecipeReadTest, ReportsAllFindingsWithTheirPlacesInTheirOrder) {
       "\"strict\"?\n"
       "r.toml:11:14: models.ground_z_m must be a number in [-1000000, 1000000] or false, got true\n"
       "r.toml:13:32: materials.files must be a list of paths (strings), got 3\n"
-      "r.toml:17:2: lights is no section of a recipe; there are dataset, models, classes, "
+      "r.toml:17:2: fogbanks is no section of a recipe; there are dataset, models, classes, "
       "materials, distractors, "
-      "environments, camera, engine, outputs, check\n"
+      "environments, lights, camera, engine, outputs, check\n"
       "r.toml:19:9: outputs.depth must be \"exr\" or false, got true; outputs.planes = "
       "[\"depth\"] writes it\n"
       "r.toml:10:7: models.dir must be a folder, found nowhere: No such file or directory\n"
