@@ -23,8 +23,8 @@ std::string classes_text(const RecipeFacts& facts) {
   }
   if (!facts.has_splits)
     text += fmt::format(
-        "split = {{ test = 0.25{} }}  # a quarter of the models, by their names' hash\n",
-        facts.has_classes ? ", stratified = true" : "");
+        "split = {{ test = 0.25{} }}  # a quarter of {} models, by their names' hash\n",
+        facts.has_classes ? ", stratified = true" : "", facts.has_classes ? "each class's" : "the");
   return text;
 }
 

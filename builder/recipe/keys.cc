@@ -147,9 +147,10 @@ constexpr std::array k_own_keys = {
     KeySpec{
         "classes.split.stratified", manifest, boolean, "", "false", k_any, "",
         R"(classes.split.by = "model")",
-        "Each class that has two models or more has one at least in each split: where all its "
-        "hashes are on one side, the nearest goes over. Each fold of split.folds has as many of "
-        "it as any other, give or take one"},
+        "The share is of each class's models, rounded, at least one and not all where it has two "
+        "or "
+        "more: those of the least hashes are test. Each fold of split.folds has as many of a class "
+        "as any other, give or take one"},
     KeySpec{"classes.split.held_out", manifest, text_list, "", "", k_any, "", "",
             "Names of the models, materials, environments or views (split.by) that are the test "
             "split, in place of a share"},

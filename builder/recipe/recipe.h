@@ -74,7 +74,7 @@ struct SplitSettings {
   SplitBy by = SplitBy::model;
   std::optional<double> test;      ///< share of what `by` names
   std::set<std::string> held_out;  ///< or those that are test, by name
-  bool stratified = false;         ///< a class's models are in both splits where it has two
+  bool stratified = false;         ///< the share is of each class's models
   int folds = 0;                   ///< 0: none
 };
 

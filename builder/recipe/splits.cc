@@ -5,6 +5,8 @@
 #include "tracer/base/nearest.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <initializer_list>
 #include <set>
 #include <string_view>
@@ -155,7 +157,6 @@ double Splits::place(const std::string& thing) const {
           : seeded_hash(recipe_.seed, k_for_split, {name_of(recipe_.split.by), thing}));
 }
 
-/// `both`: a group of two or more is to be in both splits.
 void Splits::enter(const std::map<std::string, double>& group, bool both) {
   const double share = *recipe_.split.test;
   for (const auto& [thing, at] : group)
@@ -165,6 +166,19 @@ void Splits::enter(const std::map<std::string, double>& group, bool both) {
   const auto [least, most] = std::minmax_element(group.begin(), group.end(), by_place);
   if (least->second >= share) is_test_[least->first] = true;
   if (most->second < share) is_test_[most->first] = false;
+}
+
+void Splits::enter_share(const std::map<std::string, double>& group) {
+  const double share = *recipe_.split.test;
+  std::vector<std::pair<double, std::string>> order;
+  for (const auto& [thing, at] : group)
+    order.emplace_back(at, thing);
+  std::sort(order.begin(), order.end());
+  const auto size = static_cast<std::int64_t>(order.size());
+  std::int64_t count = std::llround(share * static_cast<double>(size));
+  if (size > 1 && share > 0 && share < 1) count = std::clamp<std::int64_t>(count, 1, size - 1);
+  for (std::int64_t i = 0; i < size; ++i)
+    is_test_[order[static_cast<std::size_t>(i)].second] = i < count;
 }
 
 Splits::Splits(const Recipe& recipe) : recipe_(recipe) {
@@ -181,7 +195,10 @@ Splits::Splits(const Recipe& recipe) : recipe_(recipe) {
       groups[group].emplace(thing, place(thing));
     }
     for (const auto& [path, group] : groups)
-      enter(group, !by_model || (split.stratified && !path.empty()));
+      if (split.stratified && !path.empty())
+        enter_share(group);
+      else
+        enter(group, !by_model);
   }
   if (split.stratified && split.folds > 0) enter_folds();
 }

@@ -17,9 +17,10 @@ void read_split(Settings& settings, Recipe& recipe);
 /// Train or test, and the fold, of whatever classes.split.by names.
 ///
 /// Each of them is of the test split where a hash of its own is below the share, so that one more moves no
-/// other. Where chance leaves a group without train or without test and it has two or more, the one whose
-/// hash is nearest to the other side goes over. A group is a class with classes.split.stratified; it is all
-/// there are of materials, environments or views, which are few; models alone are in no group.
+/// other. Where chance leaves materials, environments or views, which are few, without train or without
+/// test and there are two or more, the one whose hash is nearest to the other side goes over. With
+/// classes.split.stratified the test split takes of each class its share, rounded, and one at least of
+/// two or more and not all: those of the least hashes, so that one more moves one other at most.
 ///
 /// Folds are by another hash; with classes.split.stratified those of a class that are not test are as many
 /// in each fold as in any other, give or take one: of folds that have too many the last by that hash go
@@ -41,7 +42,10 @@ class Splits {
   double place(const std::string& thing) const;
   double fold_place(const std::string& thing) const;
   std::uint64_t fold_by_hash(const std::string& thing) const;
+  /// By hash. `both`: a group of two or more is to be in both splits.
   void enter(const std::map<std::string, double>& group, bool both);
+  /// Its share, by the order of hashes.
+  void enter_share(const std::map<std::string, double>& group);
   void enter_folds();
 
   const Recipe& recipe_;
