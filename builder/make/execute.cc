@@ -77,7 +77,9 @@ class Execution {
   void enter_dataset();
   Queue sort_images();
   void count_earlier();
-  bool is_careful() const { return options_.earlier.deaths > 0; }
+  bool is_suspect(const PlannedImage& image) const {  // it is made with nothing beside it
+    return options_.earlier.crash_of(image.spec.id) != nullptr;
+  }
   void make_all(Queue queue);
   void expect_next_scene(const Queue& queue, const PlannedImage& image);
   bool make_one(const PlannedImage& image);
@@ -177,10 +179,8 @@ Execution::Queue Execution::sort_images() {
     return scene_of(a->spec) < scene_of(b->spec);
   });
   to_make_ = queue.size() + crashed_;
-  if (is_careful())
-    std::stable_partition(queue.begin(), queue.end(), [this](const PlannedImage* image) {
-      return options_.earlier.crash_of(image->spec.id) != nullptr;
-    });
+  std::stable_partition(queue.begin(), queue.end(),
+                        [this](const PlannedImage* image) { return is_suspect(*image); });
   return queue;
 }
 
@@ -199,7 +199,7 @@ void Execution::count_earlier() {
 
 /// Looks on from the first image of a scene, once, to the next scene of which anything is traced.
 void Execution::expect_next_scene(const Queue& queue, const PlannedImage& image) {
-  if (is_careful()) return;
+  if (is_suspect(image)) return;
   if (last_started_ != nullptr && scene_of(last_started_->spec) == scene_of(image.spec)) return;
   last_started_ = &image;
   const auto next = std::find_if(queue.begin(), queue.end(), [&](const PlannedImage* other) {
@@ -264,14 +264,14 @@ void Execution::make_all(Queue queue) {
   for (const PlannedImage* image : queue)
     samples += image->traces_paths() ? image->samples() : 0;
   observer_.started(queue.size(), samples);
-  if (!is_careful()) maker_.announce(one_of_each_kind(queue));
+  if (options_.earlier.deaths == 0) maker_.announce(one_of_each_kind(queue));
   std::size_t put_back = 0;  // images in a row that others are making
   while (!queue.empty() && !cut_short()) {
     const PlannedImage* image = queue.front();
     queue.pop_front();
     expect_next_scene(queue, *image);
     const bool started = make_one(*image);
-    if (is_careful()) maker_.keeper().finish();
+    if (is_suspect(*image)) maker_.keeper().finish();
     take_kept();
     if (started) {
       put_back = 0;

@@ -76,6 +76,26 @@ TEST_F(BuildTest, ExpectsTheNextSceneWhenOneIsBegun) {
     EXPECT_EQ(calls.expected[i], calls.traced[2 * (i + 1)]);
 }
 
+/// What follows is made as ever: image by image, each to the end, takes seven times as long.
+TEST_F(BuildTest, OnlyTheImageThatAProcessDiedAtIsMadeFirstAndByItself) {
+  request.overrides = {"materials.assign=all"};
+  build();
+  std::vector<std::string> order = calls.traced;
+  ASSERT_THAT(order, SizeIs(2 * 4 * 2));
+  request.output_folder = scratch() / "another";
+  calls.announced.clear();
+  calls.expected.clear();
+  BuildOptions options;
+  options.earlier.crashed = {{order[5], "died of signal 11"}};
+  options.earlier.deaths = 1;
+  build(options);
+  std::rotate(order.begin(), order.begin() + 5, order.begin() + 6);
+  EXPECT_EQ(calls.traced, order);
+  EXPECT_THAT(calls.announced, IsEmpty()) << "programs are compiled in the image that needs them";
+  EXPECT_THAT(calls.expected,
+              ElementsAre(order[3], order[5], order[6], order[8], order[10], order[12], order[14]));
+}
+
 TEST_F(BuildTest, AToneMapDevelopsAnewAndTracesNothing) {
   build();
   const auto before = contents();
