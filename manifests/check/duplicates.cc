@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of equal pixels: one view seen twice, or a change that no picture shows.
 #include "manifests/check/check.h"
+#include "manifests/check/divisions.h"
+#include "tracer/base/error.h"
 
 #include <algorithm>
 #include <map>
@@ -18,29 +20,35 @@ void check_duplicates(const CheckInput& input, CheckReport& report) {
         same[file.pixels].push_back(&image);
         ++pictures;
       }
-  std::vector<std::string> within, across;
-  std::set<Hash128> in_one, in_several;
-  for (const auto& entry : same) {
-    const std::vector<const ImageRecord*>& images = entry.second;
+  std::map<std::string_view, std::vector<std::string>> found;  // by divided_by
+  std::map<std::string_view, std::set<Hash128>> of;
+  for (const auto& [pixels, images] : same) {
     if (images.size() < 2) continue;
-    const bool one_split = std::all_of(images.begin(), images.end(), [&](const ImageRecord* image) {
-      return image->split == images[0]->split;
-    });
-    (one_split ? in_one : in_several).insert(entry.first);
-    for (std::size_t i = 1; i < images.size(); ++i)
-      (one_split ? within : across).push_back(images[i]->id + " as " + images[0]->id);
-  }
-  const auto of = [&](const std::set<Hash128>& wanted) {
-    return ids_where(input.images, [&](const ImageRecord& image) {
-      return std::any_of(image.files.begin(), image.files.end(), [&](const FileRecord& file) {
-        return file.kind == "image" && wanted.contains(file.pixels);
+    const auto any = [&, first = images[0]](std::string_view division) {
+      return std::any_of(images.begin(), images.end(), [&](const ImageRecord* image) {
+        return divided_by(*first, *image) == division;
       });
-    });
+    };
+    const std::string_view division = any("split") ? "split" : any("fold") ? "fold" : "";
+    of[division].insert(pixels);
+    for (std::size_t i = 1; i < images.size(); ++i)
+      found[division].push_back(images[i]->id + " as " + images[0]->id);
+  }
+  const auto add = [&](std::string_view division, CheckLevel level, std::string what,
+                       const char* advice) {
+    report.add(level, std::move(what), found[division], pictures, advice,
+               ids_where(input.images, [&](const ImageRecord& image) {
+                 return std::any_of(
+                     image.files.begin(), image.files.end(), [&](const FileRecord& file) {
+                       return file.kind == "image" && of[division].contains(file.pixels);
+                     });
+               }));
   };
-  report.add(CheckLevel::error, "pictures have the pixels of one in another split", across,
-             pictures, "what is tested was seen in training", of(in_several));
-  report.add(CheckLevel::warning, "pictures have the pixels of another", within, pictures, "",
-             of(in_one));
+  for (const std::string_view division : {"split", "fold"})
+    add(division, CheckLevel::error,
+        fmt::format("pictures have the pixels of one in another {}", division),
+        "what is tested was seen in training");
+  add("", CheckLevel::warning, "pictures have the pixels of another", "");
 }
 
 }  // namespace

@@ -1,114 +1,88 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the splits share: one mesh under two names, as it is once normalised, by the model's part of the
-// render key (which counts uvs and colours too where the material reads them); materials, environments and
-// views, which may be meant.
+// What the splits share, and the folds: one mesh under two names, and models of nearly one shape; materials,
+// environments and views, which may be meant.
 #include "manifests/check/check.h"
+#include "manifests/check/divisions.h"
+#include "manifests/check/meshes.h"
 #include "tracer/base/error.h"
-#include "tracer/scene/mesh_shape.h"
 
 #include <algorithm>
 #include <map>
 #include <set>
 #include <string_view>
-#include <tuple>
 #include <vector>
 
 namespace ds {
 namespace {
 
-constexpr Threshold k_leaks_near{
-    "leaks_near_shape",
-    0.03,
-    {.least = 0},
-    "How alike the shapes of two models in two splits may be, whichever way they are turned, "
-    "scaled, mirrored "
-    "or cut into triangles (shape_distance): see Checks. 0: they are not compared"};
-
 using Field = std::string ImageRecord::*;
 
-void check_shared(const CheckInput& input, CheckReport& report, const char* name, Field field) {
-  std::map<std::string, std::set<std::string>> splits;
+void check_shared(const CheckInput& input, CheckReport& report, const Division& division,
+                  const char* name, Field field) {
+  std::map<std::string, std::set<std::string>> parts;
   for (const ImageRecord& image : input.images)
-    splits[image.*field].insert(image.split);
+    if (auto part = division.part_of(image)) parts[image.*field].insert(*std::move(part));
   const auto shared = static_cast<std::uint64_t>(std::count_if(
-      splits.begin(), splits.end(), [](const auto& entry) { return entry.second.size() > 1; }));
+      parts.begin(), parts.end(), [](const auto& entry) { return entry.second.size() > 1; }));
   if (shared > 0)
-    report.say(CheckLevel::note,
-               fmt::format("{} of {} {} are in more than one split", shared, splits.size(), name));
+    report.say(CheckLevel::note, fmt::format("{} of {} {} are in more than one {}", shared,
+                                             parts.size(), name, division.one));
 }
 
-/// A model with its shape; copies that are equal are found by their hash.
-struct Shaped {
-  std::string_view shape, model, split;
-  Hash128 geometry;
-};
-
-/// Sorted by shape and so by its first number, beyond which none is near.
-std::vector<Shaped> shaped_models(const CheckInput& input) {
-  std::vector<Shaped> models;
-  const std::string* last = nullptr;
-  for (const ImageRecord& image : input.images) {
-    if (last != nullptr && *last == image.model) continue;
-    last = &image.model;
-    if (const auto at = input.dataset.shapes.find(image.model); at != input.dataset.shapes.end())
-      models.push_back({at->second, image.model, image.split, image.parts[0]});
-  }
-  std::sort(models.begin(), models.end(), [](const Shaped& a, const Shaped& b) {
-    return std::tie(a.shape, a.model) < std::tie(b.shape, b.model);
-  });
-  return models;
-}
-
-void check_shapes(const CheckInput& input, CheckReport& report) {
-  const double near = input.threshold(k_leaks_near);
-  if (near == 0) return;
-  const std::vector<Shaped> models = shaped_models(input);
+void check_shapes(const CheckInput& input, CheckReport& report, const Division& division,
+                  const std::vector<ModelPair>& near) {
+  std::map<std::string, std::uint64_t> models;
+  for (const ImageRecord* image : shaped_models(input))
+    if (const auto part = division.part_of(*image)) ++models[*part];
   std::vector<std::string> pairs;
   std::set<std::string_view> concerned;
-  for (std::size_t i = 0; i < models.size(); ++i)
-    for (std::size_t j = i + 1; j < models.size(); ++j) {
-      const Shaped &a = models[i], &b = models[j];
-      if (first_shape_number(b.shape) - first_shape_number(a.shape) > near) break;
-      if (a.split == b.split || a.geometry == b.geometry || shape_distance(a.shape, b.shape) > near)
-        continue;
-      pairs.push_back(fmt::format("{} ({}), {} ({})", a.model, a.split, b.model, b.split));
-      concerned.insert({a.model, b.model});
-    }
+  for (const auto& [a, b] : near) {
+    if (!division.parts(*a, *b)) continue;
+    pairs.push_back(fmt::format("{}, {}", name_in(a->model, *division.part_of(*a)),
+                                name_in(b->model, *division.part_of(*b))));
+    concerned.insert({a->model, b->model});
+  }
   report.add(CheckLevel::warning,
-             "pairs of models in two splits have nearly one shape, as turned, scaled or remeshed "
-             "copies have",
-             pairs, models.size(), "keep all copies of a model in one split",
+             fmt::format("pairs of models in two {} have nearly one shape, as turned, scaled or "
+                         "remeshed copies have",
+                         division.many),
+             pairs, pairs_apart(models),
+             fmt::format("keep all copies of a model in one {}", division.one),
              ids_where(input.images,
                        [&](const ImageRecord& image) { return concerned.contains(image.model); }));
 }
 
-void check_meshes(const CheckInput& input, CheckReport& report) {
-  std::map<Hash128, std::map<std::string, std::string>> geometries;  // split, model
+void check_meshes(const CheckInput& input, CheckReport& report, const Division& division,
+                  const Meshes& meshes) {
+  std::map<std::size_t, std::map<std::string, std::string>> by_mesh;  // part, model
   for (const ImageRecord& image : input.images)
-    geometries[image.parts[0]].emplace(image.split, image.model);
+    if (auto part = division.part_of(image))
+      by_mesh[meshes.of(image.model)].emplace(*std::move(part), image.model);
   std::vector<std::string> same;
-  for (const auto& [geometry, by_split] : geometries) {
-    if (by_split.size() < 2) continue;
-    std::string names;
-    for (const auto& [split, model] : by_split)
-      names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", model, split);
-    same.push_back(names);
+  for (const auto& [mesh, by_part] : by_mesh) {
+    if (by_part.size() < 2) continue;
+    std::vector<std::string> names;
+    for (const auto& [part, model] : by_part)
+      names.push_back(name_in(model, part));
+    same.push_back(fmt::format("{}", fmt::join(names, ", ")));
   }
-  report.add(CheckLevel::error, "models are the same mesh in two splits", same, geometries.size(),
-             "keep all copies of a model in one split",
+  report.add(CheckLevel::error, fmt::format("models are the same mesh in two {}", division.many),
+             same, by_mesh.size(),
+             fmt::format("keep all copies of a model in one {}", division.one),
              ids_where(input.images, [&](const ImageRecord& image) {
-               return geometries.at(image.parts[0]).size() > 1;
+               return division.part_of(image) && by_mesh.at(meshes.of(image.model)).size() > 1;
              }));
 }
 
 /// A model is the same where its name and its file's box are.
-void check_distractor_models(const CheckInput& input, CheckReport& report) {
+void check_distractor_models(const CheckInput& input, CheckReport& report,
+                             const Division& division) {
   std::map<std::string_view, const ImageRecord*> models;
   for (const ImageRecord& image : input.images)
     models.emplace(image.model, &image);
   const auto of_another = [&](const ImageRecord& image, const ObjectRecord& object) {
     const auto at = models.find(object.model);
-    return at != models.end() && at->second->split != image.split && at->second->pose &&
+    return at != models.end() && division.parts(*at->second, image) && at->second->pose &&
            at->second->pose->model_box == object.pose.model_box;
   };
   std::uint64_t with_objects = 0;
@@ -119,38 +93,45 @@ void check_distractor_models(const CheckInput& input, CheckReport& report) {
                     [&](const ObjectRecord& object) { return of_another(image, object); }))
       leaking.push_back(image.id);
   }
-  report.add(CheckLevel::error, "images show a model of another split as a distractor", leaking,
-             with_objects, "distractors.dir = \"{models}\" takes those of an image's own split");
+  report.add(CheckLevel::error,
+             fmt::format("images show a model of another {} as a distractor", division.one),
+             leaking, with_objects,
+             fmt::format("distractors.dir = \"{{models}}\" takes those of an image's own {}",
+                         division.one));
 }
 
 void check_leaks(const CheckInput& input, CheckReport& report) {
-  std::set<std::string> all_splits;
-  for (const ImageRecord& image : input.images)
-    all_splits.insert(image.split);
-  if (all_splits.size() < 2) {
+  const std::vector<Division> divisions = divisions_of(input.images);
+  if (divisions.empty()) {
     report.say(CheckLevel::note, "the dataset has one split only, nothing can leak",
                "classes.train and classes.test, or classes.split");
     return;
   }
   // Where materials, environments or views are split, models are meant to be in both.
   const std::string by = input.setting("classes.split.by");
-  if (by.empty() || by == "\"model\"") {
-    check_meshes(input, report);
-    check_distractor_models(input, report);
-    check_shapes(input, report);
-  } else {
-    check_shared(input, report, "models", &ImageRecord::model);
+  const bool by_model = by.empty() || by == "\"model\"";
+  const Meshes meshes(input.images, input.dataset.shapes);
+  const std::vector<ModelPair> near =
+      by_model ? near_pairs(input, meshes) : std::vector<ModelPair>();
+  for (const Division& division : divisions) {
+    if (by_model) {
+      check_meshes(input, report, division, meshes);
+      check_distractor_models(input, report, division);
+      check_shapes(input, report, division, near);
+    } else {
+      check_shared(input, report, division, "models", &ImageRecord::model);
+    }
+    check_shared(input, report, division, "materials", &ImageRecord::material);
+    check_shared(input, report, division, "environments", &ImageRecord::environment);
+    check_shared(input, report, division, "views", &ImageRecord::view);
   }
-  check_shared(input, report, "materials", &ImageRecord::material);
-  check_shared(input, report, "environments", &ImageRecord::environment);
-  check_shared(input, report, "views", &ImageRecord::view);
 }
 
 }  // namespace
 
 Check leaks_check() {
   return {"leaks",
-          "what the splits share: meshes, materials, environments, views",
+          "what the splits share, or the folds: meshes, materials, environments, views",
           check_leaks,
           {k_leaks_near}};
 }

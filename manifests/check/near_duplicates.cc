@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures that look alike though their pixels are not equal, and what differs between them.
 #include "manifests/check/check.h"
+#include "manifests/check/divisions.h"
 #include "tracer/base/error.h"
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -66,9 +68,9 @@ void check_near_duplicates(const CheckInput& input, CheckReport& report) {
       parts.emplace_back(part_of(input.pictures[i]->gradient, part), i);
   }
   std::sort(parts.begin(), parts.end());
-  // Of each picture the first found that it is like, in its split and in another.
-  using Others = std::vector<std::optional<std::size_t>>;
-  Others within(input.pictures.size()), across(input.pictures.size());
+  // Of each picture the first found that it is like, by what divides the two.
+  using Others = std::map<std::size_t, std::size_t>;
+  std::map<std::string_view, Others> found;
   for (std::size_t i = 0; i < parts.size(); ++i)
     for (std::size_t j = i + 1; j < parts.size() && parts[j].first == parts[i].first; ++j) {
       const std::size_t a = parts[i].second, b = parts[j].second;
@@ -76,29 +78,29 @@ void check_near_duplicates(const CheckInput& input, CheckReport& report) {
       const std::uint64_t bits = facts_a.gradient ^ facts_b.gradient;
       if (std::popcount(bits) > k_most_bits || first_equal_part(bits) != parts[i].first >> 16)
         continue;  // the other equal parts bring the pair again
-      const bool one_split = input.images[a].split == input.images[b].split;
-      std::optional<std::size_t>& other = (one_split ? within : across)[b];
-      if (!other && are_alike(facts_a, facts_b, distance) &&
+      Others& others = found[divided_by(input.images[a], input.images[b])];
+      if (!others.contains(b) && are_alike(facts_a, facts_b, distance) &&
           !same_pixels(input.images[a], input.images[b]))
-        other = a;
+        others.emplace(b, a);
     }
-  const auto add = [&](const Others& others, CheckLevel level, const char* what,
+  const auto add = [&](const Others& others, CheckLevel level, std::string what,
                        const char* advice) {
     std::vector<std::string> names;
     std::set<std::string> ids;
-    for (std::size_t i = 0; i < others.size(); ++i) {
-      if (!others[i]) continue;
-      const ImageRecord &image = input.images[i], &other = input.images[*others[i]];
+    for (const auto& [i, other_i] : others) {
+      const ImageRecord &image = input.images[i], &other = input.images[other_i];
       names.push_back(
           fmt::format("{} as {} (another {})", image.id, other.id, what_differs(image, other)));
       ids.insert({image.id, other.id});
     }
-    report.add(level, what, names, pictures, advice,
+    report.add(level, std::move(what), names, pictures, advice,
                std::vector<std::string>(ids.begin(), ids.end()));
   };
-  add(across, CheckLevel::warning, "pictures look like one in another split",
-      "what is tested was nearly seen in training");
-  add(within, CheckLevel::note, "pictures look like another", "");
+  for (const std::string_view division : {"split", "fold"})
+    add(found[division], CheckLevel::warning,
+        fmt::format("pictures look like one in another {}", division),
+        "what is tested was nearly seen in training");
+  add(found[""], CheckLevel::note, "pictures look like another", "");
 }
 
 }  // namespace

@@ -272,6 +272,36 @@ class ConcernsTest(TinyCase):
         run = self.run_it("check", self.out, "--only", "leak")
         self.assertEqual((run.code, "did you mean leaks?" in run.err), (2, True), run)
 
+    def test_check_finds_copies_however_models_are_varied(self):
+        """twin is tetra's file under another name and class, turned is box with its axes changed round."""
+        shutil.copy(self.tiny / "models/tetra.ply", self.tiny / "models/twin.ply")
+        lines = [line for line in (self.tiny / "models/box.off").read_text().splitlines() if line[:1] not in ("", "#")]
+        corners = int(lines[1].split()[0])
+        (self.tiny / "models/turned.off").write_text("\n".join(
+            lines[:2] + [" ".join((line.split()[1], line.split()[2], line.split()[0])) for line in lines[2:2 + corners]]
+            + lines[2 + corners:]) + "\n")
+        (self.tiny / "all.cla").write_text("PSB 1\n2 4\nsolid 0 2\ntetra\nbox\n\nother 0 2\ntwin\nturned\n")
+        self.edit("recipe.toml", "[materials]", '[classes]\ntrain = "all.cla"\n\n[materials]')
+        for varied in ([], ["--set", 'models.turn={rotation="any"}'], ["--set", "models.size_m={uniform=[0.05,0.1]}"]):
+            with self.subTest(varied):
+                self.build("--set", "classes.split={folds=2,stratified=true}", *varied)
+                told = self.run_it("check", self.out, "--only", "labels", "--only", "leaks", "--json").json["findings"]
+                labels = [one for one in told if one["check"] == "labels"]
+                self.assertEqual([(one["level"], one["count"]) for one in labels], [("error", 1), ("warning", 1)], told)
+                self.assertIn("tetra.ply (solid)", labels[0]["examples"][0])
+                self.assertIn("twin.ply (other)", labels[0]["examples"][0])
+                self.assertIn("turned.off (other)", labels[1]["examples"][0])
+                fold_of = {line["model"]: line["fold"] for line in map(
+                    json.loads, (self.out / "manifest/images.jsonl").read_text().splitlines())}
+                leaks = [(one["level"], one["what"].split(" in two ")[0]) for one in told
+                         if one["check"] == "leaks" and one["level"] != "note"]
+                wanted = []
+                if fold_of["tetra.ply"] != fold_of["twin.ply"]:
+                    wanted.append(("error", "models are the same mesh"))
+                if fold_of["box.off"] != fold_of["turned.off"]:
+                    wanted.append(("warning", "pairs of models"))
+                self.assertEqual(leaks, wanted)
+
     def test_pictures_that_are_all_white(self):
         concerns, err = self.concerns("--set", "outputs.tone_map=linear", "--set", "outputs.tone_map_scale=1000")
         self.assertEqual(concerns["picture_white"], IMAGES)

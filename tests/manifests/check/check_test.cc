@@ -22,13 +22,17 @@ using testing::IsEmpty;
 CheckInput clean() {
   CheckInput input;
   input.dataset.licence = "CC0-1.0";
-  input.dataset.licences = {{"CC0-1.0", "text", {"models"}}};
+  input.dataset.licences = {{"CC0-1.0", "text", {"environments/e0", "environments/e1"}}};
+  std::vector<std::string>& licensed = input.dataset.licences[0].assets;
+  for (const char* material : {"m0", "m1", "m2"})
+    licensed.push_back(fmt::format("materials/{}.mat", material));
   std::uint64_t number = 0;
   for (const char* name : {"car", "chair", "mug", "ship"})
     for (int model = 0; model < 6; ++model)
       for (int view = 0; view < 2; ++view) {
         ImageRecord image;
         image.model = fmt::format("{}{}.ply", name, model);
+        licensed.push_back("models/" + image.model);
         image.id = fmt::format("{}/{}", image.model, view);
         image.class_path = name;
         image.split = model < 3 ? "train" : "test";
@@ -252,11 +256,11 @@ TEST(Checks, CopiesOfOneShapeInTwoSplits) {
                           {"ship5.ply", "2" + shape + "000"}};
   EXPECT_THAT(
       found(input, "leaks"),
-      ElementsAre("warning: 2/5 pairs of models in two splits have nearly one shape, as turned, "
+      ElementsAre("warning: 2/6 pairs of models in two splits have nearly one shape, as turned, "
                   "scaled or remeshed copies have: car0.ply (train), car3.ply (test),car1.ply "
                   "(train), car3.ply (test)"));
   input.dataset.recipe_text = "a.b = 1\ncheck.leaks_near_shape = 0.01\n";
-  EXPECT_THAT(found(input, "leaks"), ElementsAre(HasSubstr("warning: 1/5")));
+  EXPECT_THAT(found(input, "leaks"), ElementsAre(HasSubstr("warning: 1/6")));
   input.dataset.recipe_text = "check.leaks_near_shape = 0\n";
   EXPECT_THAT(found(input, "leaks"), IsEmpty());
 }
@@ -334,7 +338,9 @@ TEST(Checks, MissingLicences) {
   CheckInput input = clean();
   input.dataset.licence.clear();
   input.dataset.licences.clear();
-  EXPECT_THAT(found(input, "licences"), ElementsAre(HasSubstr("no licence stands beside any")));
+  EXPECT_THAT(
+      found(input, "licences"),
+      ElementsAre(HasSubstr("warning: 29/29 models and scenes have no licence beside them: ")));
   // What the pictures may be used for is the maker's to say, within what the models allow.
   const std::vector<CheckFinding> all = run_checks(input, {"licences"});
   ASSERT_EQ(all.size(), 2U);
@@ -359,7 +365,8 @@ TEST(Checks, AssetsWithoutLicenceOrSource) {
   for (const char* check : {"licences", "sources"}) {
     const std::vector<CheckFinding> all = run_checks(input, {check});
     ASSERT_EQ(all.size(), 1U) << check;
-    EXPECT_EQ(all[0].level, CheckLevel::note);
+    EXPECT_EQ(all[0].level,
+              std::string(check) == "licences" ? CheckLevel::warning : CheckLevel::note);
     EXPECT_EQ(all[0].count, 2U);
     EXPECT_EQ(all[0].of, 24U + 3 + 2);
     EXPECT_THAT(all[0].examples, ElementsAre("materials/m1", "models/car0.ply"));

@@ -138,6 +138,11 @@ TEST(PictureChecks, PicturesThatLookAlike) {
   alike[1] = scene(16, 201);
   EXPECT_THAT(found(with_pictures(alike), "near_duplicates"),
               ElementsAre("note: mug/1 as mug/0 (another camera)"));
+  CheckInput folded = with_pictures(alike);
+  folded.images[0].fold = 0;
+  folded.images[1].fold = 1;
+  EXPECT_THAT(found(folded, "near_duplicates"),
+              ElementsAre("warning: mug/1 as mug/0 (another camera)"));
   CheckInput equal = with_pictures(alike);  // told by the check of duplicates
   equal.images[1].files[0].pixels = equal.images[0].files[0].pixels;
   EXPECT_THAT(found(equal, "near_duplicates"), IsEmpty());
