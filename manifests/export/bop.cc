@@ -239,8 +239,7 @@ const BopObject& Bop::object_of(const std::string& name, const std::string& clas
   object.model = std::make_shared<BopModel>(bop_model(mesh(), object.pose));
   points_ += object.model->points.size();
   if (!is_new) return object;
-  if (!names_.insert(name).second)
-    to_.note("models that are shown in several sizes are several objects");
+  names_.insert(name);
   const BopModel& model = *object.model;
   to_.write(fmt::format("models/obj_{:06}.ply", object.id), ply_text(model));
   const Vec3d side = model.most - model.least;
@@ -251,7 +250,8 @@ const BopObject& Bop::object_of(const std::string& name, const std::string& clas
                                                {"size_x", side.x},
                                                {"size_y", side.y},
                                                {"size_z", side.z}});
-  objects_[std::to_string(object.id)] = {{"model", name}, {"class_path", class_path}};
+  objects_[std::to_string(object.id)] = {
+      {"model", name}, {"class_path", class_path}, {"mm_per_unit", 1000 * size_of(object.pose)}};
   return object;
 }
 
@@ -439,6 +439,11 @@ void Bop::write_scene(const Scene& scene) {
 }
 
 void Bop::finish() {
+  if (known_.size() > names_.size())
+    to_.note(
+        fmt::format("models that are shown in several sizes are several objects: {} objects of {} "
+                    "models (mm_per_unit in dataset_info.json tells each one's size)",
+                    known_.size(), names_.size()));
   for (const auto& [split, scene] : scenes_)
     write_scene(scene);
   to_.write("models/models_info.json", models_info_.text());
@@ -453,13 +458,19 @@ void Bop::finish() {
 }  // namespace
 
 ExporterType bop_exporter() {
-  return {"bop",
-          "BOP, for poses: models in millimetres, SPLIT/SCENE with cameras, poses, boxes and masks",
-          {"image", "mask", "amodal_mask", "depth"},
-          {"image", "mask", "amodal_mask", "depth"},
-          false,
-          make_exporter<Bop>,
-          true};
+  return {
+      "bop",
+      "BOP, for poses: models in millimetres, SPLIT/SCENE with cameras, poses, boxes and masks",
+      {"image", "mask", "amodal_mask", "depth"},
+      {"image", "mask", "amodal_mask", "depth"},
+      false,
+      make_exporter<Bop>,
+      true,
+      "Poses take an object of models, in millimetres with the origin in the middle of its box, "
+      "to a camera: x right, y down, z forward; pixel centres at whole numbers. bbox_obj and "
+      "bbox_visib of scene_gt_info.json are [x, y, greatest x less least, greatest y less "
+      "least], as BOP's toolkit has them: one less than a width and height in pixels. A bbox of "
+      "scene_gt_coco.json is [x, y, width, height] in whole pixels."};
 }
 
 }  // namespace ds

@@ -175,6 +175,14 @@ std::string sources_text(const ExportInput& input) {
   return text;
 }
 
+/// Of formats whose numbers are those of the manifest.
+std::string manifest_conventions(const ExportInput& input) {
+  return std::string(input.has("mask") ? "A bbox is [x, y, width, height] of that in whole pixels. "
+                                       : "") +
+         "World: right-handed, z up, metres. Cameras: x right, y down, z forward; pixel centres at "
+         ".5.";
+}
+
 std::string body(const ExportInput& input, const ExporterType& type, const ExportFolder& to) {
   const DatasetRecord& dataset = input.dataset;
   std::string text =
@@ -186,12 +194,8 @@ std::string body(const ExportInput& input, const ExporterType& type, const Expor
       "real "
       "camera adds is missing. ";
   if (input.has("mask"))
-    text +=
-        "Masks show what is seen of the model; what stands before it is cut out. A bbox is [x, y, "
-        "width, height] of that in whole pixels. ";
-  text +=
-      "World: right-handed, z up, metres. Cameras: x right, y down, z forward; pixel centres at "
-      ".5.\n";
+    text += "Masks show what is seen of the model; what stands before it is cut out. ";
+  text += (type.conventions != nullptr ? type.conventions : manifest_conventions(input)) + "\n";
   text += notes_text(input, to) + licences_text(input) + sources_text(input);
   if (const auto cite = dataset.about.find("cite"); cite != dataset.about.end())
     text += fmt::format("\n## How to cite\n\n```\n{}\n```\n", cite->second);

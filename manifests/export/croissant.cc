@@ -80,7 +80,9 @@ json field_of(const ParquetFile::Column& column, const DatasetRecord& dataset) {
     case ParquetType::float64_matrix:
       field["dataType"] = "sc:Float";
       field["isArray"] = true;
-      field["arrayShape"] = column.name == std::string("intrinsics") ? "3,3" : "4,4";
+      field["arrayShape"] = column.name == "intrinsics" ? "3,3"
+                            : column.name == "box_m"    ? "2,3"
+                                                        : "4,4";
       break;
   }
   field["source"] = std::move(source);

@@ -80,6 +80,8 @@ struct ExporterType {
   bool needs_labels;               ///< images without class or split have no place in it
   std::unique_ptr<Exporter> (*make)(const ExportInput& input, ExportFolder& to);
   bool lists_objects = false;  ///< that images show beside their models
+  /// What the export's numbers are, for its card; null: boxes, world and cameras as in the manifest.
+  const char* conventions = nullptr;
 };
 
 /// `make` of a format.

@@ -25,6 +25,11 @@ constexpr std::pair<const char*, ParquetType> k_fields[] = {
     {"metres_per_pixel", ParquetType::float64},
     {"camera_to_world", ParquetType::float64_matrix},
     {"relative_error", ParquetType::float64},
+    {"lens_radius_m", ParquetType::float64},
+    {"focus_distance_m", ParquetType::float64},
+    {"tone_map_scale", ParquetType::float64},
+    {"model_to_world", ParquetType::float64_matrix},
+    {"box_m", ParquetType::float64_matrix},
 };
 
 constexpr std::string_view k_draws = "draws.";
@@ -97,6 +102,10 @@ std::vector<ParquetFile::Column> sample_columns(const ExportInput& input) {
     columns.push_back({name, type});
   if (has_folds(input.dataset)) columns.push_back({"fold", ParquetType::int64});
   if (input.has("mask")) columns.push_back({"bbox", ParquetType::int64_list});
+  if (input.has("mask")) columns.push_back({"truncation", ParquetType::float64});
+  if (input.has("mask") && input.has("amodal_mask"))
+    for (const char* name : {"visible_fraction", "occlusion"})
+      columns.push_back({name, ParquetType::float64});
   for (const ParquetFile::Column& column : draw_columns(input.dataset))
     columns.push_back(column);
   return columns;

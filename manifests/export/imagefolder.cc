@@ -7,6 +7,8 @@
 #include "manifests/export/sample_fields.h"
 #include "manifests/json_text.h"
 
+#include <fmt/format.h>
+
 namespace ds {
 namespace {
 
@@ -19,15 +21,22 @@ class ImageFolder : public Exporter {
 
   void add(const ExportImage& image) override {
     nlohmann::json fields = hub_fields(input_, image);
+    std::string picture;
     for (const std::string& kind : input_.kinds) {
       const std::string path = place_of_kind(image, kind);
       to_.place(file_of(image, kind), image.split + "/" + path);
       const bool png = path.ends_with(".png");
       if (!png) exr_kinds_.insert(kind);
       bytes_[image.split] += file_of(image, kind).hashes.size_bytes;
-      fields[kind == "image" ? "file_name" : kind + (png ? "_file_name" : "_path")] = path;
+      if (kind == "image")
+        picture = path;
+      else
+        fields[kind + (png ? "_file_name" : "_path")] = path;
     }
-    lines_.at(image.split)->write(canonical_json(fields) + "\n");
+    // First, before any albedo_file_name: to the first of these that it meets the library gives file_name.
+    lines_.at(image.split)
+        ->write(fmt::format("{{\"file_name\":{},{}\n", canonical_json(picture),
+                            canonical_json(fields).substr(1)));
   }
 
   std::string card_lines() const override {

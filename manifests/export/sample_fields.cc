@@ -16,6 +16,34 @@ nlohmann::json rows_of(const std::array<double, N>& values, std::size_t columns)
   return rows;
 }
 
+/// A part of what is there, null of nothing.
+nlohmann::json share(std::optional<std::uint64_t> part, std::optional<std::uint64_t> of) {
+  if (!part || !of || *of == 0) return nullptr;
+  return static_cast<double>(*part) / static_cast<double>(*of);
+}
+
+/// As the manifest's lines have them.
+void add_model(nlohmann::json& fields, const ExportInput& input, const ImageRecord& record) {
+  fields["model_to_world"] = nullptr;
+  fields["box_m"] = nullptr;
+  if (record.pose) {
+    const Box box = world_box(*record.pose);
+    fields["model_to_world"] = rows_of(record.pose->model_to_world, 4);
+    fields["box_m"] = {{box.least.x, box.least.y, box.least.z},
+                       {box.most.x, box.most.y, box.most.z}};
+  }
+  const PixelCounts& counts = record.pixel_counts;
+  if (!input.has("mask")) return;
+  fields["truncation"] = counts.beyond == 0U && counts.whole != 0U
+                             ? nlohmann::json(0.0)
+                             : share(counts.beyond, counts.whole);
+  if (!input.has("amodal_mask")) return;
+  fields["visible_fraction"] = share(counts.model, counts.amodal);
+  fields["occlusion"] = counts.model && counts.amodal
+                            ? share(*counts.amodal - *counts.model, counts.amodal)
+                            : nlohmann::json();
+}
+
 }  // namespace
 
 bool has_folds(const DatasetRecord& dataset) {
@@ -40,12 +68,16 @@ nlohmann::json sample_fields(const ExportInput& input, const ExportImage& image)
                         {"intrinsics", nullptr},
                         {"metres_per_pixel", nullptr},
                         {"camera_to_world", rows_of(record.camera_to_world, 4)},
+                        {"lens_radius_m", record.lens_radius_m},
+                        {"focus_distance_m", record.focus_distance_m},
+                        {"tone_map_scale", record.tone_map_scale},
                         {"relative_error", nullptr}};
   if (has_folds(input.dataset))
     fields["fold"] = record.fold ? static_cast<std::int64_t>(*record.fold) : std::int64_t{-1};
   if (record.intrinsics) fields["intrinsics"] = rows_of(*record.intrinsics, 3);
   if (record.metres_per_pixel) fields["metres_per_pixel"] = *record.metres_per_pixel;
   if (record.relative_error) fields["relative_error"] = *record.relative_error;
+  add_model(fields, input, record);
   if (!input.dataset.draws.empty())
     fields["draws"] = record.draws.empty() ? nlohmann::json() : to_json_value(record.draws);
   if (!input.has("mask")) return fields;

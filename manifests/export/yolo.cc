@@ -62,7 +62,10 @@ ExporterType yolo_exporter() {
           [](const ExportInput& input, ExportFolder& to) -> std::unique_ptr<Exporter> {
             return std::make_unique<Yolo>(input, to, box_line);
           },
-          true};
+          true,
+          "A line of labels is of one thing: its class and the middle, width and height of its "
+          "box, x and y from the picture's top left "
+          "corner as shares of its width and height."};
 }
 
 }  // namespace ds

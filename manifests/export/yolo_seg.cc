@@ -30,7 +30,10 @@ ExporterType yolo_seg_exporter() {
           [](const ExportInput& input, ExportFolder& to) -> std::unique_ptr<Exporter> {
             return std::make_unique<Yolo>(input, to, outline_line);
           },
-          true};
+          true,
+          "A line of labels is of one thing: its class and the corners of its outline, x and y "
+          "from the picture's top left "
+          "corner as shares of its width and height."};
 }
 
 }  // namespace ds

@@ -104,6 +104,21 @@ class ConsumersTest(TinyCase):
                 numpy.testing.assert_array_equal(numpy.asarray(row["mask"]), self.picture(record, "mask"))
                 self.assertEqual(row["camera_to_world"], record["camera_to_world"])
 
+    def test_imagefolder_with_planes_whose_names_come_first(self):
+        self.build("--set", 'outputs.planes=["amodal_mask", "albedo:png8"]')
+        self.records = {record["id"]: record for record in
+                        map(json.loads, (self.out / "manifest/images.jsonl").read_text().splitlines())}
+        self.export("imagefolder")
+        self.expect_card("imagefolder")
+        for loaded in (self.load("imagefolder", data_dir=str(self.to)), self.load(str(self.to))):
+            for rows in loaded.values():
+                self.assertEqual(len(rows), IMAGES // 2)
+                for row in rows:
+                    record = self.records[row["id"]]
+                    for kind in ("image", "albedo", "amodal_mask", "mask"):
+                        numpy.testing.assert_array_equal(numpy.asarray(row[kind]), self.picture(record, kind))
+                    self.assertEqual((row["box_m"], row["visible_fraction"]), (record["box_m"], record["visible_fraction"]))
+
     def test_parquet(self):
         self.export("parquet")
         self.expect_card("parquet")
@@ -120,8 +135,9 @@ class ConsumersTest(TinyCase):
                 self.assertEqual((record["split"], CLASSES[row["label"]]), (split, record["class_path"]))
                 for kind in ("image", "mask"):
                     numpy.testing.assert_array_equal(numpy.asarray(row[kind]), self.picture(record, kind))
-                self.assertEqual((row["camera_to_world"], row["intrinsics"]),
-                                 (record["camera_to_world"], record["intrinsics"]))
+                for name in ("camera_to_world", "intrinsics", "model_to_world", "box_m", "truncation", "lens_radius_m",
+                             "focus_distance_m", "tone_map_scale"):
+                    self.assertEqual(row[name], record[name], name)
                 ys, xs = numpy.nonzero(self.picture(record, "mask"))
                 self.assertEqual(row["bbox"], [xs.min(), ys.min(), numpy.ptp(xs) + 1, numpy.ptp(ys) + 1])
         self.assertEqual(seen, set(self.records))
@@ -187,7 +203,8 @@ jpeg_quality = { integer = [60, 95] }
                 self.assertEqual((row["images/split"].decode(), CLASSES[row["images/label"]]), (split, record["class_path"]))
                 for kind in ("image", "mask"):
                     numpy.testing.assert_array_equal(numpy.asarray(row[f"images/{kind}"]), self.picture(record, kind))
-                self.assertEqual(numpy.asarray(row["images/camera_to_world"]).tolist(), record["camera_to_world"])
+                for name in ("camera_to_world", "model_to_world", "box_m"):
+                    self.assertEqual(numpy.asarray(row[f"images/{name}"]).tolist(), record[name], name)
                 self.assertEqual(list(row["images/bbox"]), record["box"])
 
     def test_schemas(self):
