@@ -91,10 +91,14 @@ class ShellTest(TinyCase):
         for section in ("dataset", "models", "camera", "engine", "outputs"):
             self.assertIn(f"\n[{section}]\n", text)
         sections = json.loads(self.run_it("schema", "recipe").out)["properties"]
-        keys = [key for section in sections.values() for key in section["properties"]]
+        keys = [key for section in sections.values() for key in section.get("properties", {})]
         self.assertGreater(len(keys), 50)
         for key in keys:
             self.assertRegex(text, rf"(?m)^#?{key}[ .]")
+        lists = [name for name, section in sections.items() if section.get("items")]
+        self.assertEqual(lists, ["lights"])
+        for name in lists:
+            self.assertIn(f"\n#[[{name}]]\n", text)
         self.assertLessEqual(max(map(len, text.splitlines())), 130)
         small = ["--set", "camera.views=[1, 2]", "--set", "engine.width=16", "--set", "engine.height=16", "--set",
                  "engine.spp=1", "-o", self.out]
