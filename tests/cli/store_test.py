@@ -66,6 +66,17 @@ class StoreTest(TinyCase):
         # What went is traced again.
         self.assert_counts(self.make("a", "--set", "engine.spp=2"), traced=IMAGES)
 
+    def test_what_gc_took_is_not_missed_by_who_gathers(self):
+        self.make("a")
+        self.make("a", "--set", "engine.spp=2")
+        self.assertEqual(self.task("gc")["objects"]["files"], 2 * IMAGES, "the masks are those of both")
+        found = self.task("gather", self.folder / "other")
+        self.assertEqual((found["missing"], found["faults"]), (2 * IMAGES, 0))
+        self.store = self.folder / "other"
+        self.assert_counts(self.make("b", "--set", "engine.spp=2"), built=IMAGES, traced=0)
+        self.assertEqual(self.contents(self.folder / "b"), self.contents(self.folder / "a"))
+        self.assert_counts(self.make("b"), built=IMAGES, traced=IMAGES)
+
     def test_oldest_first_down_to_a_size(self):
         self.make("a", "--set", "engine.spp=2")
         old = self.files("objects") | self.files("records")
