@@ -144,13 +144,10 @@ constexpr std::array k_own_keys = {
         "What is split: all images of a model (material, ...) stay together, chosen by a hash of "
         "dataset.seed and its name; of two materials, environments or views or more one at least "
         "is in each split"},
-    KeySpec{
-        "classes.split.stratified", manifest, boolean, "", "false", k_any, "",
-        R"(classes.split.by = "model")",
-        "The share is of each class's models, rounded, at least one and not all where it has two "
-        "or "
-        "more: those of the least hashes are test. Each fold of split.folds has as many of a class "
-        "as any other, give or take one"},
+    KeySpec{"classes.split.stratified", manifest, boolean, "", "false", k_any, "",
+            R"(classes.split.by = "model")",
+            "The share is of each class's models, rounded, at least one and not all where it has "
+            "two. Each fold of split.folds has as many of a class as any other, give or take one"},
     KeySpec{"classes.split.held_out", manifest, text_list, "", "", k_any, "", "",
             "Names of the models, materials, environments or views (split.by) that are the test "
             "split, in place of a share"},
