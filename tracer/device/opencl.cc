@@ -195,10 +195,11 @@ Buffer Device::upload(std::span<const std::byte> bytes) const {
   return buffer;
 }
 
-void Device::read(const Buffer& buffer, std::span<std::byte> bytes) const {
-  DS_ASSERT(buffer.state_ && bytes.size() <= buffer.size_bytes());
+void Device::read(const Buffer& buffer, std::span<std::byte> bytes, std::size_t offset) const {
+  DS_ASSERT(buffer.state_ && offset <= buffer.size_bytes() &&
+            bytes.size() <= buffer.size_bytes() - offset);
   if (bytes.empty()) return;
-  check_cl(clEnqueueReadBuffer(state_->queue.get(), buffer.state_->memory.get(), CL_TRUE, 0,
+  check_cl(clEnqueueReadBuffer(state_->queue.get(), buffer.state_->memory.get(), CL_TRUE, offset,
                                bytes.size(), bytes.data(), 0, nullptr, nullptr),
            "clEnqueueReadBuffer");
 }

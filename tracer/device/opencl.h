@@ -129,8 +129,9 @@ class Device {
   template <typename T>
   requires std::is_trivially_copyable_v<T> Buffer upload(const std::vector<T>& values)
   const { return upload(std::as_bytes(std::span(values))); }
-  /// From and to the buffer's start; `bytes` may be shorter than the buffer, never longer.
-  void read(const Buffer& buffer, std::span<std::byte> bytes) const;
+  /// The buffer's bytes from `offset` on, which may be fewer than it has, never more.
+  void read(const Buffer& buffer, std::span<std::byte> bytes, std::size_t offset = 0) const;
+  /// To the buffer's start; `bytes` may be shorter than the buffer, never longer.
   void write(const Buffer& buffer, std::span<const std::byte> bytes) const;
   void fill_zero(const Buffer& buffer) const;
 

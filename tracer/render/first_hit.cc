@@ -89,27 +89,26 @@ std::vector<Plane> Tracer::State::launch_planes(const DeviceScene& of, const Sce
   for (const PlaneType* type : types)
     numbers += type->width;
   const Buffer view_buffer = device.upload(std::as_bytes(std::span(&view, 1)));
-  const Buffer planes =
-      device.make_buffer(pixels * static_cast<std::size_t>(numbers) * sizeof(float));
+  const std::size_t bytes = pixels * static_cast<std::size_t>(numbers) * sizeof(float);
+  if (plane_numbers.size_bytes() < bytes) plane_numbers = device.make_buffer(bytes);
   const Buffer ids = device.upload(material_ids(seen));
   Kernel& kernel = plane_kernel(types);
   unsigned argument = 0;
-  for (const Buffer* b :
-       {&of.nodes, &of.leaves, &of.triangles, &ids, &view_buffer, &of.data, &planes})
-    kernel.set(argument++, *b);
+  for (const Buffer& b :
+       {of.nodes, of.leaves, of.triangles, ids, view_buffer, of.data, plane_numbers})
+    kernel.set(argument++, b);
   if (read_materials(types))
     for (const Buffer* b : {&of.materials, &of.texture_code, &of.tables})
       kernel.set(argument++, *b);
   device.run(kernel, 0, round_up(tile_count(view, plane_lanes()), local_size), local_size);
   if (options.count_rays) ray_counts.geometry += pixels;
-  std::vector<float> all(pixels * static_cast<std::size_t>(numbers));
-  device.read(planes, std::as_writable_bytes(std::span(all)));
   std::vector<Plane> result;
-  auto from = all.begin();
+  std::size_t offset = 0;
   for (const PlaneType* type : types) {
-    const auto end = from + static_cast<std::ptrdiff_t>(pixels) * type->width;
-    result.push_back({type, width, height, std::vector<float>(from, end)});
-    from = end;
+    std::vector<float> values(pixels * static_cast<std::size_t>(type->width));
+    device.read(plane_numbers, std::as_writable_bytes(std::span(values)), offset);
+    offset += values.size() * sizeof(float);
+    result.push_back({type, width, height, std::move(values)});
   }
   return result;
 }

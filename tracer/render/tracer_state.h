@@ -88,6 +88,7 @@ struct Tracer::State {
     Kernel kernel;
   };
   std::deque<PlaneKernel> plane_kernels;
+  Buffer plane_numbers;  ///< what launch_planes writes to; as large as the largest so far
 };
 
 }  // namespace ds
