@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -17,21 +18,23 @@
 namespace ds {
 namespace {
 
-constexpr double k_horizon = 0.01;  // added to the cosine, so that the horizon is finite
-
-/// Sum of coefficients times powers of `s`, sine of the sun's elevation, and `t`, (turbidity - 2.2)
-/// / 5.
-double parameter(const std::array<double, 8>& k, double s, double t) {
-  return k[0] + s * (k[1] + s * (k[2] + s * k[3])) + t * (k[4] + s * (k[5] + s * k[6]) + t * k[7]);
-}
-
-double log_zenith(const std::array<double, 12>& k, double s, double t) {
-  return k[0] + s * (k[1] + s * (k[2] + s * (k[3] + s * k[4]))) +
-         t * (k[5] + s * (k[6] + s * (k[7] + s * k[8]))) + t * t * (k[9] + s * (k[10] + s * k[11]));
-}
+constexpr double k_horizon = 0.01;       // added to the cosine, so that the horizon is finite
+constexpr double k_photometric = 72900;  // what LuxCore's sky2 is of the watts that were fitted
 
 double clamped(double x, double low, double high) {
   return x < low ? low : x > high ? high : x;
+}
+
+/// Bernstein polynomials of x, 0 .. 1, of a degree one less than Count.
+template <std::size_t Count>
+std::array<double, Count> bernstein(double x) {
+  std::array<double, Count> result{1};
+  for (std::size_t n = 1; n < Count; ++n) {
+    for (std::size_t k = n; k > 0; --k)
+      result[k] = (1 - x) * result[k] + x * result[k - 1];
+    result[0] *= 1 - x;
+  }
+  return result;
 }
 
 /// Share of the ground's radiance that a sky of the turbidity sends back from a height over the
@@ -53,22 +56,20 @@ Vec3d at_horizon(Vec3d direction) {
 }  // namespace
 
 SkyModel::SkyModel(const SkySettings& settings) : settings_(settings) {
-  constexpr double k_least_sine = 0.0349;  // 2 degrees
-  const double s = clamped(settings.sun_direction.z, k_least_sine, 1);
-  const double t = (settings.turbidity - 2.2) / 5;
+  constexpr double k_least_elevation = portable::k_pi / 1800;  // what was fitted begins there
+  const double elevation =
+      std::max(portable::k_pi / 2 - portable::acos(clamped(settings.sun_direction.z, 0, 1)),
+               k_least_elevation);
+  const auto of_elevation = bernstein<6>(portable::pow(elevation / (portable::k_pi / 2), 1.0 / 3));
+  const auto of_turbidity = bernstein<5>((settings.turbidity - 1.7) / 8.3);
   for (std::size_t i = 0; i < 3; ++i) {
-    const SkyCoefficients& k = k_sky_coefficients[i];
-    // Exponentials keep each factor on the side of zero where the sky stays positive.
-    const double zenith_gradation = portable::exp(parameter(k.gradation, s, t));
-    Band& band = bands_[i];
-    band.b = -portable::exp(parameter(k.b, s, t));
-    band.a = (zenith_gradation - 1) * portable::exp(-band.b / (1 + k_horizon));
-    band.c = portable::exp(parameter(k.c, s, t));
-    band.d = -portable::exp(parameter(k.d, s, t));
-    band.e = portable::exp(parameter(k.e, s, t));
-    const double indicatrix =
-        1 + band.c * portable::exp(band.d * portable::acos(s)) + band.e * s * s;
-    band.scale = portable::exp(log_zenith(k.log_zenith, s, t)) / (zenith_gradation * indicatrix);
+    std::array<double, 9> at{};
+    for (std::size_t k = 0; k < at.size(); ++k)
+      for (std::size_t x = 0; x < of_elevation.size(); ++x)
+        for (std::size_t t = 0; t < of_turbidity.size(); ++t)
+          at[k] += k_sky_coefficients[i][k][x][t] * of_elevation[x] * of_turbidity[t];
+    bands_[i] = {at[0], at[1], at[2], at[3], at[4], at[5], at[6], clamped(at[7], -0.98, 0.98),
+                 at[8]};
   }
   const Vec3d sun =
       sun_radiance(settings.sun_direction, settings.turbidity) *
@@ -84,13 +85,19 @@ Vec3d SkyModel::clear(Vec3d direction, Ring& ring) const {
     const auto gradation = [&](const Band& b) {
       return 1 + b.a * portable::exp(b.b / (direction.z + k_horizon));
     };
-    ring = {direction.z, {gradation(bands_[0]), gradation(bands_[1]), gradation(bands_[2])}};
+    ring = {direction.z,
+            std::sqrt(direction.z),
+            {gradation(bands_[0]), gradation(bands_[1]), gradation(bands_[2])}};
   }
   const double cos_gamma = clamped(dot(direction, settings_.sun_direction), -1, 1);
   const double gamma = portable::acos(cos_gamma);
+  const double square = cos_gamma * cos_gamma;
   const auto band_radiance = [&](const Band& b, double gradation) {
-    const double indicatrix = 1 + b.c * portable::exp(b.d * gamma) + b.e * cos_gamma * cos_gamma;
-    return b.scale * gradation * indicatrix;
+    const double spread = 1 + b.h * b.h - 2 * b.h * cos_gamma;
+    const double chi = (1 + square) / (spread * std::sqrt(spread));
+    const double radiance = gradation * (b.c + b.d * portable::exp(b.e * gamma) + b.f * square +
+                                         b.g * chi + b.i * ring.root);
+    return radiance > 0 ? k_photometric * radiance : 0.0;
   };
   return {band_radiance(bands_[0], ring.gradation.x), band_radiance(bands_[1], ring.gradation.y),
           band_radiance(bands_[2], ring.gradation.z)};

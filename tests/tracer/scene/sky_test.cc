@@ -57,11 +57,10 @@ constexpr Irradiance k_irradiances[] = {{20, {6864.1, 11223.8, 17248.9}},
 TEST(Sky, HorizontalIrradianceAgreesWithLuxCore) {
   for (const Irradiance& wanted : k_irradiances) {
     const Vec3d found = irradiance(make_sky_image(sky_at(wanted.elevation_deg)));
-    // The requirement is 20 %; the fit does better and must not get worse.
     for (int band = 0; band < 3; ++band)
-      EXPECT_NEAR(found[band] / wanted.measured[band], 1, 0.06)
+      EXPECT_NEAR(found[band] / wanted.measured[band], 1, 0.02)
           << wanted.elevation_deg << " degrees, band " << band;
-    EXPECT_NEAR(luxcore_luminance(found) / luxcore_luminance(wanted.measured), 1, 0.06);
+    EXPECT_NEAR(luxcore_luminance(found) / luxcore_luminance(wanted.measured), 1, 0.02);
   }
 }
 
@@ -96,17 +95,59 @@ TEST(Sky, ZenithToHorizonRatioAgreesWithLuxCore) {
       return luxcore_luminance(sky.radiance(direction(89.5, k_azimuths[i])));
     });
     const double wanted_horizon = circle_mean([&](std::size_t i) { return wanted.horizon[i]; });
-    EXPECT_NEAR((zenith / horizon) / (wanted.zenith / wanted_horizon), 1, 0.12)
+    EXPECT_NEAR((zenith / horizon) / (wanted.zenith / wanted_horizon), 1, 0.03)
         << wanted.elevation_deg;
     for (std::size_t i = 0; i < 9; ++i)
       EXPECT_NEAR(
           luxcore_luminance(sky.radiance(direction(89.5, k_azimuths[i]))) / wanted.horizon[i], 1,
-          0.3)
+          0.05)
           << wanted.elevation_deg << " degrees, azimuth " << k_azimuths[i];
   }
 }
 
-TEST(Sky, IsPositiveAndFiniteEverywhere) {
+// Mitsuba 3.9's sunsky (Hosek and Wilkie's sky, albedo 0) times 72,900, which LuxCore's is of it: at 10 degrees
+// from the zenith beside the sun's azimuth (90), 8 degrees beside the sun, 60 from the zenith at 130, and 5
+// over the horizon behind (180).
+struct Radiances {
+  double turbidity, elevation_deg;
+  Vec3d measured[4];
+};
+constexpr Radiances k_radiances[] = {
+    {1.7, 10, {{544, 1146, 2048}, {11823, 13089, 10421}, {1743, 2883, 4206}, {8400, 10208, 8323}}},
+    {1.7, 40, {{1037, 2064, 4589}, {4054, 6502, 10294}, {1829, 3659, 7203}, {8152, 12565, 16419}}},
+    {1.7, 75, {{2150, 3453, 6773}, {3700, 5709, 8048}, {2057, 3953, 7942}, {6409, 9896, 14702}}},
+    {3.3, 10, {{644, 1227, 2101}, {34372, 27571, 15487}, {1918, 3028, 4162}, {7809, 9127, 7582}}},
+    {3.3,
+     40,
+     {{1461, 2469, 4880}, {14400, 15396, 16393}, {2110, 3908, 7318}, {8152, 11845, 15293}}},
+    {3.3, 75, {{5172, 6299, 9191}, {10782, 12475, 14073}, {2378, 4246, 8253}, {6392, 9531, 13975}}},
+    {6, 10, {{909, 1461, 2222}, {69818, 49837, 22378}, {2250, 3231, 4117}, {5825, 6761, 6073}}},
+    {6, 40, {{2447, 3505, 5597}, {37141, 35800, 31025}, {2594, 4383, 7395}, {7621, 9733, 12647}}},
+    {6,
+     75,
+     {{12011, 13183, 14684}, {27354, 29877, 28204}, {3149, 5051, 8753}, {6309, 8770, 12175}}},
+    {10, 10, {{1336, 1766, 2309}, {54387, 33976, 16372}, {2745, 3327, 3740}, {2283, 2509, 2649}}},
+    {10, 40, {{6486, 7009, 8296}, {99156, 88818, 70696}, {3899, 5067, 6997}, {5939, 6045, 7086}}},
+    {10,
+     75,
+     {{41152, 40843, 37004}, {94753, 96334, 78705}, {6876, 7819, 10225}, {7668, 8059, 8850}}}};
+
+TEST(Sky, RadianceIsHosekAndWilkiesAtEveryTurbidity) {
+  for (const Radiances& wanted : k_radiances) {
+    const double zenith = 90 - wanted.elevation_deg;
+    const SkyModel sky(sky_at(wanted.elevation_deg, wanted.turbidity));
+    const Vec3d found[4] = {sky.radiance(direction(10, 90)), sky.radiance(direction(zenith, 8)),
+                            sky.radiance(direction(60, 130)), sky.radiance(direction(85, 180))};
+    for (std::size_t i = 0; i < 4; ++i)
+      for (int band = 0; band < 3; ++band)
+        EXPECT_NEAR(found[i][band] / wanted.measured[i][band], 1, 0.09)
+            << "turbidity " << wanted.turbidity << ", " << wanted.elevation_deg
+            << " degrees, direction " << i << ", band " << band;
+  }
+}
+
+/// Their sky itself falls below zero far from a low sun, in one direction of two hundred.
+TEST(Sky, IsNowhereNegativeAndFiniteEverywhere) {
   for (double elevation = 0; elevation <= 90; elevation += 5)
     for (const double turbidity : {1.7, 2.2, 4.0, 7.0, 10.0}) {
       const SkyModel sky(sky_at(elevation, turbidity));
@@ -114,7 +155,10 @@ TEST(Sky, IsPositiveAndFiniteEverywhere) {
         for (double azimuth = 0; azimuth < 360; azimuth += 30) {
           const Vec3d radiance = sky.radiance(direction(zenith, azimuth));
           for (int band = 0; band < 3; ++band) {
-            EXPECT_GT(radiance[band], 0);
+            EXPECT_GE(radiance[band], 0);
+            if (elevation >= 15) {
+              EXPECT_GT(radiance[band], 0);
+            }
             EXPECT_LT(radiance[band], 3e5);
           }
         }
@@ -182,11 +226,11 @@ TEST(Sky, Sky2BecomesAnInfiniteLight) {
 
 TEST(Sky, PictureBitsAreFixed) {
   // Computed with + - * / and sqrt alone, so this hash holds on every machine; a change of the
-  // model changes it, and then k_host_render_version too.
+  // model changes it, and the keys, which hold it.
   SkySettings settings;
   settings.sun_direction = {0.6, 0, 0.8};
   settings.ground_albedo = {0.1, 0.2, 0.3};
-  EXPECT_EQ(make_sky_image(settings, 64, 32).content.hex(), "389902519b6a5e4056df38c89414e9a3");
+  EXPECT_EQ(make_sky_image(settings, 64, 32).content.hex(), "a6a7604c4edb69b4a3aa3ba3365f18e5");
 }
 
 }  // namespace

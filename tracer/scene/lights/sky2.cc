@@ -24,7 +24,9 @@ void read_sky2(const SdlNode& node, const LightProperties& properties, Light& li
 LightReading sky2_reading() {
   constexpr NumberRange k_share{.least = 0, .most = 1};
   return {
-      .help = "A clear sky without the sun's disc (Hosek and Wilkie).",
+      .help =
+          "A clear sky without the sun's disc: Hosek and Wilkie's formula, by an own fit to 2 % "
+          "(root mean square).",
       .parameters =
           {sun_direction_parameter(),
            {"turbidity", SdlType::number, "2.2", "haze of the air", {.least = 1.7, .most = 10}},
