@@ -86,39 +86,68 @@ DS_FN real ggx_lost(real alpha, real cosine) {
 ///   f = (1 - E(o)) (1 - E(i)) / (pi L),  L = mean of 1 - E over the cosine-weighted hemisphere
 /// which is reciprocal and makes a white lobe reflect all there is.
 typedef struct {
-  real alpha;
-  real share;  ///< of the lost light that comes back: less than 1 for alphas that differ
-  real mean;   ///< L
+  real alpha;    ///< root mean square of the two
+  real share;    ///< of the lost light that comes back: less than 1 for alphas that differ
+  real mean;     ///< L
+  real upright;  ///< ggx_lost at cosine 1
+  real tilt;     ///< (y^2 - x^2) / (x^2 + y^2) of alphas x and y
 } Rescattering;
 
-/// Below alpha 0.05 nothing comes back (what is lost there is below 0.006 but for grazing), from
-/// 0.1 on all. Unequal alphas count as their geometric mean and give back less, so that no
-/// direction gains: their loss depends on the azimuth, which the fit does not know.
-DS_FN Rescattering ggx_rescattering(Roughness r) {
+/// What of it is made anew at little cost, so that materials need not keep it: alpha and tilt.
+DS_FN Rescattering ggx_rescattering_of(Roughness r, real share, real mean, real upright) {
+  const real x2 = square(r.x);
+  const real y2 = square(r.y);
   Rescattering m;
-  const real alpha = sqrt(r.x * r.y);
-  const real likeness = lesser(r.x, r.y) / greater(r.x, r.y);
-  m.alpha = greater(alpha, (real)(0.05f));
-  m.share = clamp01((alpha - 0.05f) * 20.0f) * fma(likeness, (real)(0.75f), (real)(0.25f));
-  // A fit to the mean of ggx_lost: never below it, above it by at most 0.0035.
-  const real a = m.alpha;
-  m.mean = a * fma(a,
-                   fma(a, fma(a, fma(a, (real)(-1.65085f), (real)(4.87503f)), (real)(-5.67202f)),
-                       (real)(3.04705f)),
-                   (real)(-0.01554f));
+  m.alpha = greater(sqrt(0.5f * (x2 + y2)), (real)(0.05f));
+  m.tilt = (y2 - x2) / (x2 + y2);
+  m.share = share;
+  m.mean = mean;
+  m.upright = upright;
   return m;
 }
 
-/// Share of the light from `cosine` that comes back after several reflections, for Fresnel 1: also
-/// how often that lobe is to be sampled.
-DS_FN real rescattered_share(Rescattering m, real cosine) {
-  return m.share * ggx_lost(m.alpha, lesser(cosine, (real)(1.0f)));
+/// Below alpha 0.05 nothing comes back (what is lost there is below 0.006 but for grazing), from
+/// 0.1 on all.
+DS_FN Rescattering ggx_rescattering(Roughness r) {
+  const real zero = (real)(0.0f);
+  Rescattering m = ggx_rescattering_of(r, zero, zero, zero);
+  m.share = clamp01((m.alpha - 0.05f) * 20.0f) * fma(square(m.tilt), (real)(-0.075f), (real)(1.0f));
+  m.upright = ggx_lost(m.alpha, (real)(1.0f));
+  // A fit to the mean of ggx_lost: never below it, above it by at most 0.0035. Unequal alphas lose less.
+  const real a = m.alpha;
+  m.mean = a *
+           fma(a,
+               fma(a, fma(a, fma(a, (real)(-1.65085f), (real)(4.87503f)), (real)(-5.67202f)),
+                   (real)(3.04705f)),
+               (real)(-0.01554f)) *
+           fma(square(m.tilt), (real)(-0.03f), (real)(1.0f));
+  return m;
+}
+
+/// What one reflection loses of the light from w, unit, above the surface, but for `share`. Between the
+/// axes of unequal alphas it is what their root mean square loses. Seen along the smoother one's axis it
+/// is no less than upright, along the rougher one's less by up to 0.38 at grazing: bounds of our own below
+/// the integral by quadrature, so that no direction gains; at most 0.002 above it, and below it by 0.015
+/// to 0.025 in the mean over the hemisphere (alphas 0.05 to 1).
+DS_FN real rescattered_loss(Rescattering m, real3 w) {
+  const real cosine = lesser(w.z, (real)(1.0f));
+  const real x2 = square(w.x);
+  const real y2 = square(w.y);
+  const real across = m.tilt * (x2 - y2) / greater(x2 + y2, (real)(1e-12f));
+  const real between = ggx_lost(m.alpha, cosine);
+  const real lost = fma(clamp01(across), lesser(m.upright - between, (real)(0.0f)), between);
+  return lost * fma(clamp01(-across), -0.38f * (1.0f - cosine), (real)(1.0f));
+}
+
+/// Share of the light from w that comes back after several reflections, for Fresnel 1: also how often
+/// that lobe is to be sampled.
+DS_FN real rescattered_share(Rescattering m, real3 w) {
+  return m.share * rescattered_loss(m, w);
 }
 
 /// The lobe of several reflections times the cosine of wi, before Fresnel.
 DS_FN real rescattered(Rescattering m, real3 wo, real3 wi) {
-  return rescattered_share(m, wo.z) * ggx_lost(m.alpha, lesser(wi.z, (real)(1.0f))) * wi.z *
-         DS_INV_PI / m.mean;
+  return rescattered_share(m, wo) * rescattered_loss(m, wi) * wi.z * DS_INV_PI / m.mean;
 }
 
 /// Fresnel's part in it: a geometric series of reflections of mean reflectance `average` (cosine

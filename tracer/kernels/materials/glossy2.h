@@ -30,9 +30,9 @@ enum { glossy2_children = 0 };
 DS_TRAITS(glossy2, k_trait_lobes | k_trait_casts_caustics | k_trait_receives_caustics);
 /// What is derived: the parts of a Coat, then what the coat does to light for the viewer.
 enum {
-  glossy2_alpha,
   glossy2_share,
   glossy2_mean,
+  glossy2_upright,
   glossy2_at_normal,                             ///< 3
   glossy2_again = glossy2_at_normal + 3,         ///< 3
   glossy2_passed_out = glossy2_again + 3,        ///< 3: 1 - C(o)
@@ -84,12 +84,12 @@ DS_FN real3 glossy2_left3(Coat c, real lost, real grazing) {
              glossy2_left(c.ks.z, c.again_fresnel.z, lost, grazing));
 }
 
-/// 1 - C, seen at this cosine. Of unequal roughnesses the one that reflects more counts, so that no
+/// 1 - C, seen from w. Of unequal roughnesses the one that reflects more counts at grazing, so that no
 /// azimuth gains.
-DS_FN real3 glossy2_passed(Coat c, real cosine) {
+DS_FN real3 glossy2_passed(Coat c, real3 w) {
   const real grazing =
-      greater(ggx_grazing_share(c.roughness.x, cosine), ggx_grazing_share(c.roughness.y, cosine));
-  return glossy2_left3(c, rescattered_share(c.again, cosine), grazing);
+      greater(ggx_grazing_share(c.roughness.x, w.z), ggx_grazing_share(c.roughness.y, w.z));
+  return glossy2_left3(c, rescattered_share(c.again, w), grazing);
 }
 
 /// 1 - mean C.
@@ -107,7 +107,7 @@ DS_FN real glossy2_lobe_probability(const real* p, Coat c, real3 passed, real3 w
   const real sum = fma(luminance(input3(p, glossy2_kd)), through, coat);
   const real share = choose(
       sum > 0.0f, greater(coat, (real)(1e-10f)) / greater(sum, (real)(1e-10f)), (real)(0.5f));
-  return clamp01(share) * (1.0f - rescattered_share(c.again, wo.z));
+  return clamp01(share) * (1.0f - rescattered_share(c.again, wo));
 }
 
 DS_FN void glossy2_prepare(const real* p, Viewer viewer, real* derived) {
@@ -118,10 +118,10 @@ DS_FN void glossy2_prepare(const real* p, Viewer viewer, real* derived) {
   c.again_fresnel =
       vec(glossy2_again_fresnel(c.again, c.ks.x), glossy2_again_fresnel(c.again, c.ks.y),
           glossy2_again_fresnel(c.again, c.ks.z));
-  const real3 passed = glossy2_passed(c, viewer.wo.z);
-  derived[glossy2_alpha] = c.again.alpha;
+  const real3 passed = glossy2_passed(c, viewer.wo);
   derived[glossy2_share] = c.again.share;
   derived[glossy2_mean] = c.again.mean;
+  derived[glossy2_upright] = c.again.upright;
   put3(derived, glossy2_at_normal, c.ks);
   put3(derived, glossy2_again, c.again_fresnel);
   put3(derived, glossy2_passed_out, passed);
@@ -134,9 +134,8 @@ DS_FN Coat glossy2_coat(const real* p) {
   const real* derived = p + glossy2_end;
   Coat c;
   c.roughness = roughness_of(p[glossy2_uroughness], p[glossy2_vroughness]);
-  c.again.alpha = derived[glossy2_alpha];
-  c.again.share = derived[glossy2_share];
-  c.again.mean = derived[glossy2_mean];
+  c.again = ggx_rescattering_of(c.roughness, derived[glossy2_share], derived[glossy2_mean],
+                                derived[glossy2_upright]);
   c.ks = input3(derived, glossy2_at_normal);
   c.again_fresnel = input3(derived, glossy2_again);
   return c;
@@ -146,7 +145,7 @@ DS_FN Coat glossy2_coat(const real* p) {
 DS_FN real3 glossy2_base(const real* p, Coat c, real3 wo, real3 wi) {
   const real* derived = p + glossy2_end;
   const real3 mean = input3(derived, glossy2_passed_mean);
-  const real3 coupled = mul(input3(derived, glossy2_passed_out), glossy2_passed(c, wi.z));
+  const real3 coupled = mul(input3(derived, glossy2_passed_out), glossy2_passed(c, wi));
   // A coat that lets nothing through has nothing under it: 0 / 1e-6.
   const real3 through =
       vec(coupled.x / greater(mean.x, (real)(1e-6f)), coupled.y / greater(mean.y, (real)(1e-6f)),

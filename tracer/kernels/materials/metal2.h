@@ -19,9 +19,9 @@ enum { metal2_children = 0 };
 DS_TRAITS(metal2, k_trait_lobes | k_trait_casts_caustics);
 /// What is derived; see Rescattering.
 enum {
-  metal2_alpha,
   metal2_share,
   metal2_mean,
+  metal2_upright,
   metal2_again_fresnel,  ///< 3: Fresnel's part in what comes back after several reflections
   metal2_again = metal2_again_fresnel + 3,  ///< probability of sampling that
   metal2_derived
@@ -42,9 +42,9 @@ DS_FN real3 metal2_average_fresnel(const real* p) {
 
 DS_FN void metal2_prepare(const real* p, Viewer viewer, real* derived) {
   const Rescattering m = ggx_rescattering(roughness_of(p[metal2_uroughness], p[metal2_vroughness]));
-  derived[metal2_alpha] = m.alpha;
   derived[metal2_share] = m.share;
   derived[metal2_mean] = m.mean;
+  derived[metal2_upright] = m.upright;
   put3(derived, metal2_again_fresnel, splat((real)(0.0f)));
   derived[metal2_again] = (real)(0.0f);
   if (!any_lane(m.share > 0.0f)) return;
@@ -52,20 +52,19 @@ DS_FN void metal2_prepare(const real* p, Viewer viewer, real* derived) {
   put3(derived, metal2_again_fresnel,
        vec(rescattered_fresnel(m, average.x), rescattered_fresnel(m, average.y),
            rescattered_fresnel(m, average.z)));
-  derived[metal2_again] = rescattered_share(m, viewer.wo.z);
+  derived[metal2_again] = rescattered_share(m, viewer.wo);
 }
 
 /// Both lobes at wi, which is above the surface; h is their half vector.
 DS_INLINED BsdfValue metal2_both(const real* p, real3 wo, real3 wi, real3 h) {
   const real* derived = p + metal2_end;
-  const Lobe lobe = ggx_lobe(roughness_of(p[metal2_uroughness], p[metal2_vroughness]), wo, wi, h);
+  const Roughness r = roughness_of(p[metal2_uroughness], p[metal2_vroughness]);
+  const Lobe lobe = ggx_lobe(r, wo, wi, h);
   BsdfValue v;
   v.value = scale(metal2_fresnel(p, dot(wo, h)), lobe.specular);
   v.pdf = lobe.pdf;
-  Rescattering m;
-  m.alpha = derived[metal2_alpha];
-  m.share = derived[metal2_share];
-  m.mean = derived[metal2_mean];
+  const Rescattering m =
+      ggx_rescattering_of(r, derived[metal2_share], derived[metal2_mean], derived[metal2_upright]);
   if (!any_lane(m.share > 0.0f)) return v;
   v.value = add_scaled(v.value, input3(derived, metal2_again_fresnel), rescattered(m, wo, wi));
   const real again = derived[metal2_again];
