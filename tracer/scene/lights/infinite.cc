@@ -36,7 +36,8 @@ void read_infinite(const SdlNode& node, const LightProperties& properties, Light
 LightReading infinite_reading() {
   return {.parameters = concatenated({image_parameters(),
                                       {{"sampleupperhemisphereonly", SdlType::flag, "0",
-                                        "no light from below the horizon"}}}),
+                                        "the light is sampled from above the horizon only; a "
+                                        "scattered ray still meets it below, as in LuxCore"}}}),
           .transformation_help = "a rotation, mirrored or not",
           .read = read_infinite};
 }
