@@ -77,8 +77,8 @@ void print_capped(BuildResult result, const Recipe& recipe) {
 
 void print_result(const BuildResult& result, const Dataset& dataset) {
   const std::string from_store =
-      result.traced == result.built || result.deaths > 0 ? ""
-      : result.traced == 0                               ? " from the store"
+      result.traced == result.built ? ""
+      : result.traced == 0          ? " from the store"
                            : fmt::format(" ({} traced, the others from the store)", result.traced);
   std::string text =
       fmt::format("{}: {} images: {} built{}, {} reused, {} failed", dataset.recipe.name,
@@ -261,14 +261,16 @@ int run_build(const Arguments& arguments) {
   const RendererFactory factory = [&] {
     TracerOptions options;
     options.device = arguments.device;
-    return make_tracer_renderer(inputs, dataset.recipe, options);
+    std::unique_ptr<Renderer> renderer = make_tracer_renderer(inputs, dataset.recipe, options);
+    tell_device(renderer->device());
+    return renderer;
   };
   BuildResult result;
   std::set<std::string> told_before;
   const BroughtHome brought = work_and_bring_home(*dataset.store, disk, [&] {
     // Only now: planning may be ended anywhere, and needs nobody to wait for it.
     const std::atomic<bool>& stop = stop_on_signal();
-    Progress progress(arguments.keep_going);
+    Progress progress(arguments.keep_going, earlier);
     WatchedObserver watched(progress);
     result = execute(dataset, plan, inputs, build_options, disk, factory, watched, stop);
     told_before = progress.told();
@@ -301,7 +303,10 @@ int run_build(const Arguments& arguments) {
     print_json(told);
   else
     print_result(result, dataset);
-  return result.ok() && concerns == 0 ? 0 : 1;
+  const int code = result.ok() && concerns == 0 ? 0 : 1;
+  // Who reads the report is to have one, whatever becomes of this process at its end.
+  if (!stopped_by_signal()) tell_end_of_build(lost_result() ? 1 : code);
+  return code;
 }
 
 }  // namespace ds

@@ -17,10 +17,14 @@
 
 namespace {
 
+bool wants_json(std::span<const char* const> words) {
+  const auto is_json = [](const char* word) { return std::string_view(word) == "--json"; };
+  return std::any_of(words.begin(), words.end(), is_json);
+}
+
 /// Also where the command line is wrong: who reads the answer by a program is to learn that so.
 void answer_error(std::span<const char* const> words, const std::exception& error) {
-  const auto is_json = [](const char* word) { return std::string_view(word) == "--json"; };
-  if (std::any_of(words.begin(), words.end(), is_json)) ds::print_json(ds::error_json(error));
+  if (wants_json(words)) ds::print_json(ds::error_json(error));
 }
 
 void print_error(const std::string& message) {
@@ -55,13 +59,14 @@ int run(std::span<const char* const> arguments) {
 
 int main(int count, char** arguments) {
   ds::reserve_standard_streams();
-  if (count > 1 && std::string_view(arguments[1]) == "build")
-    if (const auto code = ds::watch_over_build()) return *code;
+  const std::span words(arguments, static_cast<std::size_t>(count));
+  if (count > 1 && std::string_view(words[1]) == "build")
+    if (const auto code = ds::watch_over_build(wants_json(words))) return *code;
   ds::watch_signals();
   // A file over `ulimit -f` is then an error of one write, as on a full disk, and not the end of
   // the process.
   std::signal(SIGXFSZ, SIG_IGN);
-  int code = run({arguments, static_cast<std::size_t>(count)});
+  int code = run(words);
   if (const auto why = ds::lost_result()) {
     print_error("standard output: cannot write: " + *why);
     code = code == 0 ? 1 : code;

@@ -31,32 +31,37 @@ std::string format_duration(double seconds) {
   return fmt::format("{}:{:02}", minutes, whole % 60);
 }
 
-Progress::Progress(bool tell_failures) : tell_failures_(tell_failures), moves_(has_status_line()) {}
+Progress::Progress(bool tell_failures, const EarlierProcesses& earlier)
+    : tell_failures_(tell_failures),
+      moves_(has_status_line()),
+      images_before_(earlier.to_make),
+      samples_before_(earlier.samples_to_trace) {}
 
 Progress::~Progress() {
   clear_status_line();
 }
 
 void Progress::started(std::uint64_t images, std::uint64_t samples) {
-  images_ = images;
-  samples_ = samples;
+  images_ = std::max(images, images_before_);
+  images_done_ = images_ - images;
+  samples_ = std::max(samples, samples_before_);
+  samples_done_ = samples_ - samples;
+  done_at_start_ = done(0);
   start_ = Clock::now();
 }
 
 std::string Progress::line(const std::string& image, std::uint64_t samples_now) const {
   const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
   const double traced = static_cast<double>(samples_traced_ + samples_now);
-  // Where samples are traced they are what takes the time; else the images are.
-  const double total = samples_ > 0 ? static_cast<double>(samples_) : static_cast<double>(images_);
-  const double done = samples_ > 0 ? static_cast<double>(samples_done_ + samples_now)
-                                   : static_cast<double>(images_done_);
-  const double share = total > 0 ? done / total : 1;
+  const double share = total() > 0 ? done(samples_now) / total() : 1;
+  const double done_here = done(samples_now) - done_at_start_;
   // Rounded down: 100 % is all of it.
   const std::string before =
       fmt::format("[{}/{}] {:3.0f}% ", images_done_, images_, std::floor(100 * share));
   std::string rate, left;
   if (traced > 0 && seconds > 0) rate = fmt::format("  {:.2f} Msamples/s", traced / seconds * 1e-6);
-  if (share > 0 && share < 1) left = "  ETA " + format_duration(seconds * (1 - share) / share);
+  if (done_here > 0 && share < 1)
+    left = "  ETA " + format_duration(seconds * (total() - done(samples_now)) / done_here);
   const std::optional<int> columns = line_columns();
   if (!columns) return before + image + rate + left;
   // What is too long for the terminal is the name, then the rate: when it ends is what people watch.

@@ -15,8 +15,8 @@ namespace ds {
 class Progress : public BuildObserver {
  public:
   /// `tell_failures`: the first of each cause as it comes; else they are left to the end, which is then
-  /// near.
-  explicit Progress(bool tell_failures);
+  /// near. What processes before this one came to is done already.
+  explicit Progress(bool tell_failures, const EarlierProcesses& earlier = {});
   ~Progress() override;
 
   void started(std::uint64_t images, std::uint64_t samples) override;
@@ -29,6 +29,11 @@ class Progress : public BuildObserver {
   const std::set<std::string>& told() const { return told_; }
 
  private:
+  /// Of what takes the time: samples where any are traced, else images.
+  double total() const { return static_cast<double>(samples_ > 0 ? samples_ : images_); }
+  double done(std::uint64_t samples_now) const {
+    return static_cast<double>(samples_ > 0 ? samples_done_ + samples_now : images_done_);
+  }
   std::string line(const std::string& image, std::uint64_t samples_now) const;
   void show(const std::string& image, std::uint64_t samples_now);
 
@@ -36,10 +41,13 @@ class Progress : public BuildObserver {
   bool tell_failures_;
   std::set<std::string> causes_, told_;
   bool moves_;
+  std::uint64_t images_before_,
+      samples_before_;  ///< to make and to trace, when the first process began
   std::uint64_t images_ = 0, images_done_ = 0;
   std::uint64_t samples_ = 0;         ///< planned
   std::uint64_t samples_done_ = 0;    ///< of those, by finished images
   std::uint64_t samples_traced_ = 0;  ///< really traced by finished images
+  double done_at_start_ = 0;          ///< of samples_ or images_, by earlier processes
   Clock::time_point start_ = Clock::now();
 };
 

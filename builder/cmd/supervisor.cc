@@ -2,6 +2,8 @@
 #include "builder/cmd/supervisor.h"
 
 #include "builder/cmd/arguments.h"
+#include "builder/cmd/error_text.h"
+#include "builder/cmd/plan_text.h"
 #include "builder/cmd/stop_signal.h"
 #include "tracer/base/error.h"
 #include "tracer/base/streams.h"
@@ -15,6 +17,8 @@
 #include <cstring>
 #include <ctime>
 #include <new>
+#include <stdexcept>
+#include <string>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -30,24 +34,31 @@ constexpr int k_most_in_vain = 10;
 /// Processes in a row that hang or die outside of images, before the build is given up.
 constexpr int k_most_idle = 2;
 
+/// Where in its work a process is.
+enum class Phase { before_images, in_image, behind_images };
+
 /// Memory that both processes see. Only the one that builds writes, while it lives.
 struct WatchedState {
   std::atomic<std::uint64_t> beats;  ///< signs of life
   std::atomic<double> hang_seconds;
   std::atomic<bool> ended;  ///< it has told all it has to tell
   std::atomic<int> code;    ///< its exit code, then
-  std::atomic<std::uint64_t> to_make, built, failed, traced, developed, samples;
-  std::atomic<bool> in_image;
-  char image[4096];  ///< its id, and a zero; longer ones are cut
-
-  /// Behind the last image it is at none: the manifest is written.
-  void leave_last_image() {
-    if (built + failed >= to_make) in_image = false;
-  }
+  std::atomic<std::uint64_t> to_make, to_trace, built, failed;
+  std::atomic<Phase> phase;
+  char image[4096];   ///< its id, and a zero; longer ones are cut
+  char device[1024];  ///< likewise
 };
+
+template <std::size_t Size>
+void put_text(char (&to)[Size], const std::string& text) {
+  const std::size_t size = std::min(text.size(), Size - 1);
+  std::memcpy(to, text.data(), size);
+  to[size] = '\0';
+}
 
 WatchedState* g_shared = nullptr;
 EarlierProcesses g_earlier;
+bool g_json = false;  ///< the report is asked for
 
 /// Why a process ended that did not end by itself.
 struct Death {
@@ -106,7 +117,7 @@ struct Watch {
   bool shows_life() {
     const bool beat = std::exchange(beats, g_shared->beats.load()) != beats;
     const std::int64_t cpu_before = std::exchange(cpu, cpu_nanoseconds(process));
-    return beat || (!g_shared->in_image && cpu != cpu_before);
+    return beat || (g_shared->phase != Phase::in_image && cpu != cpu_before);
   }
 
   void pass_on(int signal) {
@@ -135,11 +146,14 @@ struct Watch {
     }
   }
 
-  /// How one ended that has told all: a driver may hang as the process goes.
+  /// How one ended that has told all: a driver may hang or crash as the process goes.
   std::optional<int> code() const {
-    if (hung && g_shared->ended) return g_shared->code;
-    if (WIFEXITED(status) && g_shared->ended) return WEXITSTATUS(status);
-    return std::nullopt;
+    if (!g_shared->ended) return std::nullopt;
+    if (WIFEXITED(status)) return WEXITSTATUS(status);
+    if (!hung && is_stop(WTERMSIG(status))) return std::nullopt;
+    say(Stream::people, "dsbuild: warning: the process that built {} when all was done\n",
+        death().how);
+    return g_shared->code;
   }
 
   Death death() const {
@@ -154,22 +168,46 @@ struct Watch {
   }
 };
 
-/// By the signal only where that is a wish: the other process has left its core already.
+/// As a wish to end ends every process.
 int end_as(const Death& death) {
-  if (is_stop(death.signal) || death.signal == SIGKILL) die_of_signal(death.signal);
-  return death.signal != 0 ? 128 + death.signal : death.code;
+  if (death.signal != 0) die_of_signal(death.signal);
+  return death.code;
 }
 
 void add_up() {
-  if (g_earlier.to_make == 0) g_earlier.to_make = g_shared->to_make;
-  g_earlier.traced += g_shared->traced;
-  g_earlier.developed += g_shared->developed;
-  g_earlier.samples += g_shared->samples;
+  ++g_earlier.deaths;
+  g_earlier.to_make = std::max(g_earlier.to_make, g_shared->to_make.load());
+  g_earlier.samples_to_trace = std::max(g_earlier.samples_to_trace, g_shared->to_trace.load());
+  g_earlier.made = g_earlier.journal->read();
+  if (g_shared->device[0] != '\0') g_earlier.device = g_shared->device;
+}
+
+/// The end where another process would be for nothing: what is made is recorded.
+int give_up(const std::exception& error) {
+  say(Stream::people, "dsbuild: error: {}\n", error.what());
+  nlohmann::json report = error_json(error);
+  std::uint64_t built = 0, traced = 0, developed = 0, samples = 0;
+  for (const auto& [id, image] : g_earlier.made) {
+    if (!image.placed) continue;
+    ++built;
+    traced += image.work.traced ? 1U : 0U;
+    developed += image.work.developed ? 1U : 0U;
+    samples += image.work.samples;
+  }
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - g_earlier.began;
+  report.update({{"built", built},
+                 {"traced", traced},
+                 {"developed", developed},
+                 {"traced_samples", samples},
+                 {"deaths", g_earlier.deaths},
+                 {"seconds", time.count()},
+                 {"device", g_earlier.device}});
+  if (g_json) print_json(report);
+  return report["exit_code"].get<int>();
 }
 
 /// Enters the death of a process with the image it was at; how often that happened at this image.
 int blame(const std::string& id, const std::string& how) {
-  ++g_earlier.deaths;
   const auto known = std::find_if(g_earlier.crashed.begin(), g_earlier.crashed.end(),
                                   [&](const CrashedImage& image) { return image.id == id; });
   if (known == g_earlier.crashed.end()) {
@@ -186,43 +224,57 @@ struct InVain {
   int idle = 0;     ///< hung or died before their first image, or behind their last
 };
 
+const char* phase_text() {
+  switch (g_shared->phase) {
+    case Phase::before_images:
+      return "before its first image";
+    case Phase::in_image:
+      return "in an image";
+    case Phase::behind_images:
+      return "behind its last image, as the manifest is written";
+  }
+  return "";
+}
+
 /// What follows on a process that hung or died outside of its images.
 std::optional<int> after_idling(const Death& death, InVain& in_vain) {
-  const bool again = ++in_vain.idle < k_most_idle;
-  say(Stream::people, "dsbuild: {}: the process that builds {} {}{}\n", again ? "warning" : "error",
-      death.how, g_shared->image[0] == '\0' ? "before its first image" : "behind its last image",
-      again ? "; another one goes on" : ", again");
-  if (!again) return end_as(death);
-  add_up();
-  ++g_earlier.deaths;
+  const std::string what = fmt::format("the process that builds {} {}", death.how, phase_text());
+  if (++in_vain.idle >= k_most_idle)
+    return give_up(
+        std::runtime_error(what + ", again; what is made is kept: build again to go on"));
+  say(Stream::people, "dsbuild: warning: {}; another one goes on\n", what);
   return std::nullopt;
 }
 
-/// What follows on a death: nothing where another process is to be begun, else how this one ends.
-std::optional<int> after(const Watch& watch, const Death& death, InVain& in_vain) {
+/// What follows on one that did in an image.
+std::optional<int> after_image(const Death& death, InVain& in_vain) {
   const std::string id = g_shared->image;
-  const bool out_of_time = death.signal == SIGKILL && used_up_its_time(watch.use);
-  if (watch.hung && watch.told != 0) return end_as({death.how, watch.told, 1});
-  if (watch.told != 0 || is_stop(death.signal) || out_of_time) return end_as(death);
-  if (::isatty(STDERR_FILENO) == 1) say(Stream::people, "\n");  // behind the line that moved
-  if (g_shared->built > 0) in_vain = {};
-  if (!g_shared->in_image) return after_idling(death, in_vain);
-  add_up();
   if (g_shared->built == 0) ++in_vain.crashed;
   const bool again = blame(id, death.how) < k_most_crashes;
   say(Stream::people, "dsbuild: warning: {}: the process that made it {}{}\n", id, death.how,
       again ? "; it is tried once more" : ", again");
   if (in_vain.crashed < k_most_in_vain) return std::nullopt;
-  say(Stream::people,
-      "dsbuild: error: {} processes in a row died with no image made: it is not the images; is the "
-      "device well (--device)?\n",
-      in_vain.crashed);
-  return end_as(death);
+  return give_up(Error(ErrorKind::device,
+                       fmt::format("{} processes in a row died with no image made: it is not the "
+                                   "images; is the device well (--device)?",
+                                   in_vain.crashed)));
+}
+
+/// What follows on a death: nothing where another process is to be begun, else how this one ends.
+std::optional<int> after(const Watch& watch, const Death& death, InVain& in_vain) {
+  const bool out_of_time = death.signal == SIGKILL && used_up_its_time(watch.use);
+  if (watch.hung && watch.told != 0) return end_as({death.how, watch.told, 1});
+  if (watch.told != 0 || is_stop(death.signal) || out_of_time) return end_as(death);
+  if (::isatty(STDERR_FILENO) == 1) say(Stream::people, "\n");  // behind the line that moved
+  if (g_shared->built > 0) in_vain = {};
+  add_up();
+  return g_shared->phase == Phase::in_image ? after_image(death, in_vain)
+                                            : after_idling(death, in_vain);
 }
 
 }  // namespace
 
-std::optional<int> watch_over_build() {
+std::optional<int> watch_over_build(bool json) {
   void* const memory = ::mmap(nullptr, sizeof(WatchedState), PROT_READ | PROT_WRITE,
                               MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) return std::nullopt;
@@ -231,6 +283,9 @@ std::optional<int> watch_over_build() {
   ::pthread_sigmask(SIG_BLOCK, &signals, &before);
   const pid_t watching = ::getpid();
   g_earlier.began = std::chrono::steady_clock::now();
+  static MadeJournal journal;
+  g_earlier.journal = &journal;
+  g_json = json;
   double hang_seconds = Arguments{}.stall_seconds;
   for (InVain in_vain;;) {
     g_shared = new (memory) WatchedState{};
@@ -269,6 +324,10 @@ void expect_signs_of_life(double hang_seconds) {
   if (g_shared != nullptr) g_shared->hang_seconds = hang_seconds;
 }
 
+void tell_device(const std::string& device) {
+  if (g_shared != nullptr) put_text(g_shared->device, device);
+}
+
 void tell_end_of_build(int code) {
   if (g_shared == nullptr) return;
   g_shared->code = code;
@@ -278,12 +337,13 @@ void tell_end_of_build(int code) {
 WatchedObserver::WatchedObserver(BuildObserver& observer) : observer_(observer) {}
 
 WatchedObserver::~WatchedObserver() {
-  if (g_shared != nullptr) g_shared->in_image = false;
+  if (g_shared != nullptr) g_shared->phase = Phase::behind_images;
 }
 
 void WatchedObserver::started(std::uint64_t images, std::uint64_t samples) {
   if (g_shared != nullptr) {
     g_shared->to_make = images;
+    g_shared->to_trace = samples;
     g_shared->failed = 0;  // those that never began
   }
   observer_.started(images, samples);
@@ -291,11 +351,8 @@ void WatchedObserver::started(std::uint64_t images, std::uint64_t samples) {
 
 void WatchedObserver::image_started(const PlannedImage& image) {
   if (g_shared != nullptr) {
-    const std::string& id = image.spec.id;
-    const std::size_t size = std::min(id.size(), sizeof(g_shared->image) - 1);
-    std::memcpy(g_shared->image, id.data(), size);
-    g_shared->image[size] = '\0';
-    g_shared->in_image = true;
+    put_text(g_shared->image, image.spec.id);
+    g_shared->phase = Phase::in_image;
     ++g_shared->beats;
   }
   observer_.image_started(image);
@@ -310,10 +367,6 @@ void WatchedObserver::image_done(const PlannedImage& image, const ImageWork& wor
   if (g_shared != nullptr) {
     ++g_shared->beats;
     ++g_shared->built;
-    g_shared->traced += work.traced ? 1U : 0U;
-    g_shared->developed += work.developed ? 1U : 0U;
-    g_shared->samples += work.samples;
-    g_shared->leave_last_image();
   }
   observer_.image_done(image, work);
 }
@@ -322,7 +375,6 @@ void WatchedObserver::image_failed(const PlannedImage& image, const std::string&
   if (g_shared != nullptr) {
     ++g_shared->beats;
     ++g_shared->failed;
-    g_shared->leave_last_image();
   }
   observer_.image_failed(image, why);
 }
@@ -330,6 +382,14 @@ void WatchedObserver::image_failed(const PlannedImage& image, const std::string&
 void WatchedObserver::waiting() {
   if (g_shared != nullptr) ++g_shared->beats;
   observer_.waiting();
+}
+
+void WatchedObserver::all_tried() {
+  if (g_shared != nullptr) {
+    ++g_shared->beats;
+    g_shared->phase = Phase::behind_images;
+  }
+  observer_.all_tried();
 }
 
 }  // namespace ds

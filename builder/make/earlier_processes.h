@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
+#include "builder/make/made_journal.h"
+
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -24,16 +25,19 @@ inline constexpr int k_most_crashes = 2;
 struct EarlierProcesses {
   std::vector<CrashedImage> crashed;
   std::uint64_t deaths = 0;
-  std::uint64_t to_make = 0;  ///< images, when the first began
-  /// Of what they made, as far as they came to tell.
-  std::uint64_t traced = 0, developed = 0, samples = 0;
+  std::uint64_t to_make = 0;           ///< images, when the first began
+  std::uint64_t samples_to_trace = 0;  ///< likewise
+  MadeImages made;
+  std::string device;  ///< that they traced on
+  /// Where this one tells what it makes; null: nobody asks.
+  MadeJournal* journal = nullptr;
   /// When the first one began; else this one.
   std::chrono::steady_clock::time_point began = std::chrono::steady_clock::now();
 
   /// Nothing where none died at the image.
   const CrashedImage* crash_of(std::string_view id) const;
-  /// Images that they made, of which `now` are still to make.
-  std::uint64_t made(std::uint64_t now) const { return to_make - std::min(to_make, now); }
+  /// Nothing where none made any of the image.
+  const MadeImage* made_of(std::string_view id) const;
 };
 /// "the process that made it died of signal 11 (Segmentation fault), 2 times".
 std::string to_text(const CrashedImage& image);

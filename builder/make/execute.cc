@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/make/execute.h"
 
+#include "builder/make/left_over.h"
 #include "builder/make/manifest_lines.h"
 #include "builder/plan/dataset_manifest.h"
 #include "builder/plan/manifest_state.h"
@@ -14,6 +15,7 @@
 #include <chrono>
 #include <deque>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -67,7 +69,9 @@ class Execution {
         maker_(dataset, inputs, plan.texts, disk, factory,
                options.wanted == Wanted::store
                    ? std::nullopt
-                   : std::optional(options.copy ? Placing::copy : Placing::share)) {}
+                   : std::optional(options.copy ? Placing::copy : Placing::share)) {
+    maker_.keeper().enter_in(options.earlier.journal);
+  }
 
   BuildResult run();
 
@@ -76,7 +80,8 @@ class Execution {
 
   void enter_dataset();
   Queue sort_images();
-  void count_earlier();
+  bool made_before(const PlannedImage& image);
+  void count(const PlannedImage& image, const ImageWork& work);
   bool is_suspect(const PlannedImage& image) const {  // it is made with nothing beside it
     return options_.earlier.crash_of(image.spec.id) != nullptr;
   }
@@ -97,7 +102,7 @@ class Execution {
   bool anything_to_do() const;
   void begin();
   void finish();
-  void remove_left_over();
+  void remove_left();
   const char* outcome() const;
   void log();
   /// Whether no further image is made.
@@ -114,8 +119,7 @@ class Execution {
   ImageMaker maker_;
   BuildResult result_;
   std::unordered_set<const PlannedImage*> made_;  ///< by this build
-  std::uint64_t to_make_ = 0, crashed_ = 0;
-  const PlannedImage* last_started_ = nullptr;  ///< the first of its scene
+  const PlannedImage* last_started_ = nullptr;    ///< the first of its scene
   /// Of images under way, until they are kept: another process would make them too.
   std::unordered_map<const PlannedImage*, Claims::Claim> claims_;
   std::map<std::string, std::vector<std::string>> failures_;  ///< image ids by what went wrong
@@ -151,6 +155,24 @@ void Execution::begin() {
   make_room_for_ending(dataset_.folder);
 }
 
+/// Enters what was made now.
+void Execution::count(const PlannedImage& image, const ImageWork& work) {
+  ++result_.built;
+  made_.insert(&image);
+  result_.traced += work.traced ? 1U : 0U;
+  result_.developed += work.developed ? 1U : 0U;
+  result_.traced_samples += work.samples;
+}
+
+/// Whether a process of this build that died made all of the image, which is counted then: it is
+/// built, not reused, and not made again with `force`.
+bool Execution::made_before(const PlannedImage& image) {
+  const MadeImage* made = options_.earlier.made_of(image.spec.id);
+  if (made == nullptr || (image.stale() && !(options_.force && made->placed))) return false;
+  count(image, made->work);
+  return true;
+}
+
 /// Counts the shard's images and those that need nothing, enters failures, and returns what is to
 /// be made, images of one scene together.
 Execution::Queue Execution::sort_images() {
@@ -165,12 +187,11 @@ Execution::Queue Execution::sort_images() {
       // Told by who saw it.
       failures_[to_text(*crash)].push_back(image.spec.id);
       ++result_.failed;
-      ++crashed_;
-    } else if (image.stale()) {
+    } else if (const bool before = made_before(image); image.stale() && !before) {
       if (options_.copy) maker_.keeper().part_from_store(image);
       queue.push_back(&image);
     } else {
-      ++result_.reused;
+      if (!before) ++result_.reused;
       if (image.record) maker_.keeper().record(image);
       if (options_.copy) maker_.keeper().part_from_store(image);
     }
@@ -178,23 +199,9 @@ Execution::Queue Execution::sort_images() {
   std::stable_sort(queue.begin(), queue.end(), [](const PlannedImage* a, const PlannedImage* b) {
     return scene_of(a->spec) < scene_of(b->spec);
   });
-  to_make_ = queue.size() + crashed_;
   std::stable_partition(queue.begin(), queue.end(),
                         [this](const PlannedImage* image) { return is_suspect(*image); });
   return queue;
-}
-
-/// What earlier processes made is built, not reused. With `force` it is made again.
-void Execution::count_earlier() {
-  const EarlierProcesses& earlier = options_.earlier;
-  result_.deaths = earlier.deaths;
-  if (options_.force) return;
-  const std::uint64_t made = std::min(earlier.made(to_make_), result_.reused);
-  result_.built += made;
-  result_.reused -= made;
-  result_.traced += earlier.traced;
-  result_.developed += earlier.developed;
-  result_.traced_samples += earlier.samples;
 }
 
 /// Looks on from the first image of a scene, once, to the next scene of which anything is traced.
@@ -249,11 +256,8 @@ void Execution::take_kept() {
     if (kept.dropped) continue;
     catch_failure(*kept.image, [&] {
       if (kept.error) std::rethrow_exception(kept.error);
-      ++result_.built;
-      made_.insert(kept.image);
-      result_.traced += kept.work.traced ? 1U : 0U;
-      result_.developed += kept.work.developed ? 1U : 0U;
-      result_.traced_samples += kept.work.samples;
+      const MadeImage* before = options_.earlier.made_of(kept.image->spec.id);
+      count(*kept.image, before != nullptr ? together(before->work, kept.work) : kept.work);
       observer_.image_done(*kept.image, kept.work);
     });
   }
@@ -284,6 +288,7 @@ void Execution::make_all(Queue queue) {
   }
   maker_.keeper().finish();
   take_kept();
+  observer_.all_tried();
   result_.stopped = stop_ && !queue.empty();
 }
 
@@ -296,37 +301,10 @@ void Execution::collect_failures() {
   }
 }
 
-void Execution::remove_left_over() {
-  if (plan_.to_remove.empty() && !plan_.forgets) return;
-  Database& database = *dataset_.database;
-  std::set<fs::path> folders;
-  std::vector<std::string> removed;
-  for (const std::string& path : plan_.to_remove) {
-    try {
-      disk_.remove(dataset_.folder / path);
-      removed.push_back(path);
-    } catch (const DiskFailed&) {
-      throw;
-    } catch (const Error& error) {  // tried again by the next build, and no reason to end this one
-      result_.failures.emplace_back(path, error.what());
-    }
-    folders.insert((dataset_.folder / path).parent_path());
-  }
-  result_.removed_files = removed.size();
-  std::error_code not_empty;
-  // A model's name may be a path: its folder may have left one above empty.
-  for (fs::path folder : folders)
-    while (folder.parent_path() != dataset_.folder && fs::remove(folder, not_empty))
-      folder = folder.parent_path();
-  std::set<std::string> wanted;
-  for (const PlannedImage& image : plan_.images)
-    wanted.insert(image.spec.id);
-  Transaction transaction(database.connection());
-  for (const std::string& path : removed)
-    database.remove_placed(dataset_.row.id, path);
-  for (const auto& [id, parts] : database.images(dataset_.row.id))
-    if (!wanted.contains(id)) database.remove_image(dataset_.row.id, id);
-  transaction.commit();
+void Execution::remove_left() {
+  RemovedFiles removed = remove_left_over(dataset_, plan_, disk_);
+  result_.removed_files = removed.files;
+  std::move(removed.failures.begin(), removed.failures.end(), std::back_inserter(result_.failures));
 }
 
 /// Whether all files of the image are as they were placed; not where that cannot be told.
@@ -408,7 +386,7 @@ void Execution::finish() {
   maker_.keeper().remember_stamps();
   // Of builds that end at once, the last to write must have seen what all of them placed.
   const Claims::Claim claim = dataset_.claims->own_datasets();
-  if (!cut_short()) remove_left_over();
+  if (!cut_short()) remove_left();
   const bool as_planned = is_as_planned();
   std::optional<PlacedFiles> placed_now;
   PlacedFiles& placed = as_planned ? *plan_.placed : placed_now.emplace(dataset_);
@@ -469,10 +447,11 @@ BuildResult Execution::run() {
   if (anything_to_do()) begin();
   clean_up_killed_builds(dataset_, build_number_);
   make_all(sort_images());
-  count_earlier();
   collect_failures();
   result_.not_reached = result_.images - result_.built - result_.reused - result_.failed;
+  result_.deaths = options_.earlier.deaths;
   result_.device = maker_.device();
+  if (result_.device.empty()) result_.device = options_.earlier.device;
   result_.programs = maker_.programs();
   // The images made are recorded; the caller is to learn their counts too.
   try {

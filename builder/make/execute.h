@@ -21,8 +21,8 @@ struct BuildOptions {
   /// Of which the plan must be, too. Where files are not wanted, what is counted as built went into
   /// the store, and the folder and the manifest stay as they are.
   Wanted wanted = Wanted::files;
-  /// Where some died, nothing is done beside the image under way, so that it is known which one it
-  /// is if one dies again, and what they died at comes first.
+  /// Where some died, what they died at comes first, with nothing done beside it, so that it is known
+  /// which one it is if one dies again. What they made is counted as made, and not made again.
   EarlierProcesses earlier = {};
   /// When what the user started began; BuildResult::seconds counts from here.
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
@@ -67,6 +67,8 @@ class BuildObserver {
   virtual void image_failed(const PlannedImage& /*image*/, const std::string& /*why*/) {}
   /// Every image left is being made by other processes.
   virtual void waiting() {}
+  /// No image is under way, and none will be: what follows is the manifest.
+  virtual void all_tried() {}
 };
 
 /// Makes what the plan found stale: images of one scene one after another, so that a scene is

@@ -163,6 +163,8 @@ void ImageKeeper::keep_together(std::vector<Ready*>& images) {
       put_objects(images);
       commit(images);
       place(images);
+      for (const Ready* image : images)
+        journal_placed(*image);
       return;
     } catch (const DamagedDatabase&) {
       throw;
@@ -180,6 +182,7 @@ void ImageKeeper::keep_alone(Ready& image) {
     put_objects({&image});
     commit({&image});
     place_alone(image.placed);
+    journal_placed(image);
   } catch (const DamagedDatabase&) {
     throw;
   } catch (const DiskFailed&) {
@@ -188,6 +191,14 @@ void ImageKeeper::keep_alone(Ready& image) {
   } catch (const Error&) {
     image.error = std::current_exception();
   }
+}
+
+void ImageKeeper::journal_begun(const Ready& image) const {
+  if (journal_ != nullptr && !image.error) journal_->begin(image.image->spec.id, image.work);
+}
+
+void ImageKeeper::journal_placed(const Ready& image) const {
+  if (journal_ != nullptr && !image.error) journal_->placed(image.image->spec.id);
 }
 
 void ImageKeeper::settle(Ready& image) {
@@ -333,8 +344,10 @@ void ImageKeeper::enter_stamps() {
 
 void ImageKeeper::commit(const std::vector<Ready*>& images) {
   Transaction transaction(dataset_.database->connection());
-  for (const Ready* image : images)
+  for (const Ready* image : images) {
+    journal_begun(*image);
     enter(*image->image, image);
+  }
   enter_stamps();
   transaction.commit();
   stamped_.clear();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "builder/make/made_journal.h"
 #include "builder/make/traced_image.h"
 #include "builder/store/dataset.h"
 #include "builder/store/made_record.h"
@@ -45,6 +46,8 @@ class ImageKeeper {
   ImageKeeper(const ImageKeeper&) = delete;
   ImageKeeper& operator=(const ImageKeeper&) = delete;
 
+  /// Where images are entered as they are kept; called before any is. Null: nowhere.
+  void enter_in(MadeJournal* journal) { journal_ = journal; }
   /// Waits where more than k_most_waiting_bytes wait already.
   void keep(TracedImage image);
   /// Whether an image under way makes the product.
@@ -82,6 +85,8 @@ class ImageKeeper {
                      const TraceRun& run) const;
   Product developed(Ready& ready, const OutputFile& output, const TracedImage& traced) const;
   Product plane_file(Ready& ready, const OutputFile& output, const TracedImage& traced) const;
+  void journal_begun(const Ready& image) const;
+  void journal_placed(const Ready& image) const;
   void put_objects(const std::vector<Ready*>& images) const;
   void commit(const std::vector<Ready*>& images);
   void enter(const PlannedImage& image, const Ready* ready);
@@ -93,6 +98,7 @@ class ImageKeeper {
   const TextSet& texts_;
   Disk& disk_;
   std::optional<Placing> placing_;
+  MadeJournal* journal_ = nullptr;
   std::vector<PlacedFile> stamped_;  ///< of the thread while images are under way
   bool disk_failed_ = false;         ///< of the thread
 

@@ -4,6 +4,7 @@ import fcntl
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -33,6 +34,11 @@ class SupervisorTest(TinyCase):
             variables["DS_SHIM_ONCE"] = str(self.folder / "once")
         return variables
 
+    def device(self):
+        """What a build traces on where nobody says."""
+        devices = self.run_it("devices", "--json").json["devices"]
+        return next(device["name"] for device in devices if device["default"])
+
     def listed(self):
         lines = (self.out / "manifest/images.jsonl").read_text().splitlines()
         return sorted(json.loads(line)["id"] for line in lines)
@@ -47,9 +53,9 @@ class SupervisorTest(TinyCase):
             # Each of its images is tried twice.
             self.assert_counts(counts, images=IMAGES + VIEWS, built=IMAGES, reused=0, failed=VIEWS, not_reached=0,
                                deaths=2 * VIEWS)
-            # What was kept as the process died it could not tell any more.
-            self.assertTrue(0 < counts["traced"] <= IMAGES, counts)
-            self.assertEqual(counts["traced_samples"], counts["traced"] * SAMPLES)
+            # What was kept as the process died counts too, once.
+            self.assert_counts(counts, traced=IMAGES, developed=IMAGES, traced_samples=IMAGES * SAMPLES)
+            self.assertNotEqual(counts["device"], "")
             self.assertIn(f"large.off/0: the process that made it {told}; it is tried once more", run.err)
             self.assertIn(f"large.off/0: the process that made it {told}, again", run.err)
             self.assertEqual(len(counts["failures"]), 1, counts)
@@ -65,8 +71,9 @@ class SupervisorTest(TinyCase):
     def test_without_keep_going_it_ends_as_at_any_failure(self):
         run = self.run_it("build", self.recipe, "-o", self.out, "--json", env=self.environment("segv"))
         self.assertEqual(run.code, 1, run)
-        self.assertEqual(run.json["failed"], 1)
-        self.assertEqual(run.json["deaths"], 2)
+        self.assert_counts(run.json, failed=1, deaths=2, traced=run.json["built"])
+        # The last process came to trace nothing.
+        self.assertEqual(run.json["device"], self.device())
 
     def test_once_is_no_failure_and_gives_the_same_bytes(self):
         whole = self.folder / "whole"
@@ -76,7 +83,12 @@ class SupervisorTest(TinyCase):
             run = self.run_it("build", self.recipe, "-o", self.out, "--stall", str(STALL), "--json",
                               env=self.environment(how, once=True))
             self.assertEqual(run.code, 0, run)
-            self.assert_counts(run.json, built=IMAGES + VIEWS, reused=0, failed=0, deaths=1)
+            self.assert_counts(run.json, built=IMAGES + VIEWS, reused=0, failed=0, deaths=1, traced=IMAGES + VIEWS)
+            # Both processes are at one build.
+            told = [tuple(map(int, found)) for found in re.findall(r"^\[(\d+)/(\d+)\]", run.err, re.MULTILINE)]
+            self.assertEqual({total for _, total in told}, {IMAGES + VIEWS}, run)
+            self.assertEqual([done for done, _ in told], sorted({done for done, _ in told}), run)
+            self.assertEqual(told[-1][0], IMAGES + VIEWS)
             # Of both processes.
             seconds = self.run_it("log", self.out, "--json").json["builds"][0]["seconds"]
             self.assertAlmostEqual(run.json["seconds"], seconds, places=3)
@@ -142,8 +154,8 @@ class SupervisorTest(TinyCase):
         self.addCleanup(process.kill)
         self.assertEqual(self.stop_builders(process, 2, signal.SIGKILL), 2)
         err = process.communicate(timeout=60)[1]
-        self.assertEqual(process.returncode, -signal.SIGKILL, err)
-        self.assertIn(f"dsbuild: error: {told}, again\n", err)
+        self.assertEqual(process.returncode, 1, err)
+        self.assertIn(f"dsbuild: error: {told}, again; ", err)
 
     def test_a_process_that_always_stops_before_its_first_image_is_given_up(self):
         process = self.start("build", self.recipe, "-o", self.out, "--stall", str(STALL))
@@ -187,8 +199,51 @@ class SupervisorTest(TinyCase):
     def test_a_device_that_crashes_at_everything_is_given_up(self):
         environment = {**self.environment("segv"), "DS_SHIM_BYTES": "1"}
         run = self.run_it("build", self.recipe, "-o", self.out, "-k", env=environment)
-        self.assertEqual(run.code, 128 + signal.SIGSEGV, run)
+        self.assertEqual(run.code, 1, run)
         self.assertIn("10 processes in a row died with no image made", run.err)
+        run = self.run_it("build", self.recipe, "-o", self.out, "-k", "--json", env=environment)
+        self.assert_counts(run.json, kind="device", exit_code=1, built=0, traced=0, deaths=10)
+
+    def behind(self, file, once):
+        """An environment in which a process is killed as it gives a finished file its name."""
+        environment = self.environment("kill", once)
+        del environment["DS_SHIM_BYTES"]
+        return {**environment, "DS_SHIM_FILE": file}
+
+    def test_a_process_that_is_killed_behind_its_last_image_is_begun_again_once(self):
+        all_made = {"built": IMAGES + VIEWS, "traced": IMAGES + VIEWS, "developed": IMAGES + VIEWS,
+                    "traced_samples": (IMAGES + VIEWS) * SAMPLES, "device": self.device()}
+        told = "the process that builds died of signal 9 (Killed) behind its last image, as the manifest is written"
+        for file in ("manifest/images.jsonl", "manifest/dataset.json"):
+            for more in ((), ("--force",)):
+                run = self.run_it("build", self.recipe, "-o", self.out, "--json", *more, env=self.behind(file, once=True))
+                self.assertEqual(run.code, 0, run)
+                self.assert_counts(run.json, deaths=1, reused=0, failed=0, **all_made)
+                self.assertIn(f"dsbuild: warning: {told}; another one goes on\n", run.err)
+                self.assertEqual(self.run_it("verify", self.out).code, 0)
+                subprocess.run(["rm", "-rf", str(self.out), str(self.folder / "once")], check=True)
+        run = self.run_it("build", self.recipe, "-o", self.out, "--json", env=self.behind(file, once=False))
+        self.assertEqual(run.code, 1, run)
+        self.assert_counts(run.json, deaths=2, kind="internal", exit_code=1, **all_made)
+        self.assertEqual(run.json["failures"][0]["why"], run.json["error"])
+        self.assertEqual(run.err.count("dsbuild: error: "), 1, run)
+        self.assertIn(f"dsbuild: error: {told}, again; ", run.err)
+        self.assert_counts(self.build(), built=0, reused=IMAGES + VIEWS)
+
+    def test_what_is_traced_and_not_in_place_yet_counts_once(self):
+        (self.tiny / "models/large.off").unlink()
+        run = self.run_it("build", self.recipe, "-o", self.out, "--json", env=self.behind("0.png", once=True))
+        self.assertEqual(run.code, 0, run)
+        self.assert_counts(run.json, built=IMAGES, traced=IMAGES, developed=IMAGES, traced_samples=IMAGES * SAMPLES, deaths=1)
+
+    def test_one_that_dies_when_all_is_done_has_done_all(self):
+        for how in ("segv", "kill"):
+            environment = {**self.environment(how), "DS_SHIM_EXIT": "1"}
+            del environment["DS_SHIM_BYTES"]
+            run = self.run_it("build", self.recipe, "-o", self.out, "--json", env=environment)
+            self.assertEqual((run.code, len(run.out.splitlines())), (0, 1), run)
+            self.assert_counts(run.json, deaths=0)
+            self.assertIn("when all was done\n", run.err)
 
     def test_to_stop_a_process_that_hangs_ends_both(self):
         process = self.start("build", self.recipe, "-o", self.out, env=self.environment("hang"))

@@ -96,6 +96,41 @@ TEST_F(BuildTest, OnlyTheImageThatAProcessDiedAtIsMadeFirstAndByItself) {
               ElementsAre(order[3], order[5], order[6], order[8], order[10], order[12], order[14]));
 }
 
+/// Of a process that died, what comes after it counts what it made, and makes none of it again.
+TEST_F(BuildTest, WhatAnEarlierProcessMadeIsMadeOnce) {
+  MadeJournal journal;
+  BuildOptions options;
+  options.earlier.journal = &journal;
+  build(options);
+  const MadeImages made = journal.read();
+  ASSERT_THAT(made, SizeIs(k_images));
+  for (const auto& [image, what] : made) {
+    EXPECT_TRUE(what.placed);
+    EXPECT_TRUE(what.work.traced && what.work.developed);
+    EXPECT_EQ(what.work.samples, 32U * 32U);
+  }
+  options.earlier.made = made;
+  options.earlier.deaths = 1;
+  for (const bool force : {false, true}) {
+    options.force = force;
+    const BuildResult result = build(options);
+    EXPECT_EQ(result.built, k_images);
+    EXPECT_EQ(result.traced, k_images);
+    EXPECT_EQ(result.traced_samples, k_images * 32 * 32);
+    EXPECT_EQ(result.reused, 0U);
+    EXPECT_THAT(calls.traced, IsEmpty());
+  }
+  // One that was begun and is not known to be in place is traced anew where all are to be, and else
+  // where it is not there.
+  MadeImage& first = options.earlier.made.begin()->second;
+  first.placed = false;
+  EXPECT_EQ(build(options).traced, k_images);
+  EXPECT_THAT(calls.traced, SizeIs(1));
+  options.force = false;
+  EXPECT_EQ(build(options).traced, k_images);
+  EXPECT_THAT(calls.traced, IsEmpty());
+}
+
 TEST_F(BuildTest, AToneMapDevelopsAnewAndTracesNothing) {
   build();
   const auto before = contents();
