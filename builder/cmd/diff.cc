@@ -78,7 +78,7 @@ std::vector<FileComparisons> compare_pictures(const DatasetDifference& found, co
     for (std::size_t i = begin; i < end && !stop; ++i) {
       for (const ChangedFile& file : found.changed[i].files) {
         FileComparison& comparison = comparisons[i].emplace_back();
-        if (file.a == nullptr || file.b == nullptr || file.is_same_picture()) continue;
+        if (!file.a || !file.b || file.is_same_picture()) continue;
         std::vector<std::byte> png;
         comparison = compare_files(a, b, file, pictures.wanted() ? &png : nullptr);
         if (!png.empty()) pictures.put(file.a->path, png);
@@ -127,10 +127,7 @@ int run_diff(const Arguments& arguments) {
   for (const fs::path& dataset : {a, b})
     if (!arguments.diff_folder.empty()) check_outside(arguments.diff_folder, dataset);
   Pictures pictures(arguments.diff_folder);
-  const std::vector<ImageRecord> images_a = read_images_manifest(a),
-                                 images_b = read_images_manifest(b);
-  const DatasetDifference found =
-      compare_datasets(read_dataset_manifest(a), images_a, read_dataset_manifest(b), images_b);
+  const DatasetDifference found = compare_datasets(a, b);
   const std::vector<FileComparisons> comparisons = compare_pictures(found, a, b, pictures);
   const nlohmann::json record = difference_json(found, comparisons);
   pictures.commit(record);

@@ -39,8 +39,8 @@ std::string cause_of(const ChangedImage& image) {
 }
 
 std::string file_text(const ChangedFile& file, const FileComparison& found) {
-  if (file.a == nullptr) return "in B alone";
-  if (file.b == nullptr) return "in A alone";
+  if (!file.a) return "in B alone";
+  if (!file.b) return "in A alone";
   if (file.is_same_picture()) return "same pixels in other bytes";
   return difference_text(found);
 }
@@ -88,10 +88,7 @@ void print_difference(const DatasetDifference& found,
   for (const auto& [images, where] :
        {std::pair(&found.only_a, 'A'), std::pair(&found.only_b, 'B')}) {
     if (images->empty()) continue;
-    std::vector<std::string> names;
-    for (const ImageRecord* image : *images)
-      names.push_back(image->id);
-    say(Stream::result, "in {} alone: {}: {}\n", where, names.size(), names_of(names, verbose));
+    say(Stream::result, "in {} alone: {}: {}\n", where, images->size(), names_of(*images, verbose));
   }
   std::map<std::string, std::vector<std::size_t>> by_cause;
   for (std::size_t i = 0; i < found.changed.size(); ++i)
@@ -100,7 +97,7 @@ void print_difference(const DatasetDifference& found,
     std::vector<std::string> names;
     std::map<std::string, Worst> by_kind;
     for (const std::size_t i : members) {
-      names.push_back(found.changed[i].a->id);
+      names.push_back(found.changed[i].id);
       for (std::size_t f = 0; f < comparisons[i].size(); ++f)
         note(by_kind, found.changed[i].files[f], comparisons[i][f]);
     }
@@ -126,12 +123,6 @@ void print_difference(const DatasetDifference& found,
 
 json difference_json(const DatasetDifference& found,
                      const std::vector<FileComparisons>& comparisons) {
-  const auto ids = [](const std::vector<const ImageRecord*>& images) {
-    json list = json::array();
-    for (const ImageRecord* image : images)
-      list.push_back(image->id);
-    return list;
-  };
   json changed = json::array();
   for (std::size_t i = 0; i < found.changed.size(); ++i) {
     const ChangedImage& image = found.changed[i];
@@ -139,22 +130,22 @@ json difference_json(const DatasetDifference& found,
     for (std::size_t f = 0; f < image.files.size(); ++f) {
       const ChangedFile& file = image.files[f];
       json row{{"path", file.either().path}, {"kind", file.either().kind}};
-      if (file.a == nullptr || file.b == nullptr)
-        row["only"] = file.a == nullptr ? "B" : "A";
+      if (!file.a || !file.b)
+        row["only"] = file.a ? "A" : "B";
       else if (file.is_same_picture())
         row["same_pixels"] = true;
       else
         row.update(difference_json(comparisons[i][f]));
       files.push_back(std::move(row));
     }
-    changed.push_back({{"id", image.a->id},
+    changed.push_back({{"id", image.id},
                        {"parts", image.parts},
                        {"fields", image.fields},
                        {"files", std::move(files)}});
   }
   return {{"same", found.same},
-          {"only_a", ids(found.only_a)},
-          {"only_b", ids(found.only_b)},
+          {"only_a", found.only_a},
+          {"only_b", found.only_b},
           {"changed", std::move(changed)},
           {"dataset_fields", found.dataset_fields}};
 }

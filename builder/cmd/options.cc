@@ -91,7 +91,9 @@ void add_option(CLI::App& verb, Option option, CommandLine& line) {
           ->required();
       return;
     case Option::two_targets:
-      verb.add_option("A", to.target, "recipe or folder of a dataset; or an image file")
+      verb.add_option("A", to.target,
+                      "recipe or folder of a dataset, of which the manifest is believed (dsbuild "
+                      "verify checks that its files are as it says); or an image file")
           ->required();
       verb.add_option("B", to.other, "another; an image file beside an image file")->required();
       return;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "manifests/diff/datasets.h"
 
+#include "manifests/diff/manifest_lines.h"
 #include "manifests/json_text.h"
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <map>
 #include <set>
 #include <string_view>
@@ -42,14 +42,13 @@ std::vector<std::string> differing_fields(const json& a, const json& b,
 std::vector<ChangedFile> changed_files(const ImageRecord& a, const ImageRecord& b) {
   std::map<std::string_view, ChangedFile> by_kind;
   for (const FileRecord& file : a.files)
-    by_kind[file.kind].a = &file;
+    by_kind[file.kind].a = file;
   for (const FileRecord& file : b.files)
-    by_kind[file.kind].b = &file;
+    by_kind[file.kind].b = file;
   std::vector<ChangedFile> changed;
-  for (const auto& [kind, files] : by_kind)
-    if (files.a == nullptr || files.b == nullptr ||
-        files.a->hashes.xxh128 != files.b->hashes.xxh128)
-      changed.push_back(files);
+  for (auto& [kind, files] : by_kind)
+    if (!files.a || !files.b || files.a->hashes.xxh128 != files.b->hashes.xxh128)
+      changed.push_back(std::move(files));
   return changed;
 }
 
@@ -119,39 +118,57 @@ bool is_same_shape(const DatasetRecord& a, const DatasetRecord& b, const std::st
 
 ChangedImage compare(const ImageRecord& a, const ImageRecord& b, const Common& common,
                      bool same_shape) {
-  ChangedImage found{&a, &b, differing_parts(a, b, common, same_shape), {}, changed_files(a, b)};
+  ChangedImage found{a.id, differing_parts(a, b, common, same_shape), {}, changed_files(a, b)};
   const std::string line_a = to_json_line(a), line_b = to_json_line(b);
   if (line_a != line_b)
     found.fields = differing_fields(json::parse(line_a), json::parse(line_b), is_of_files);
   return found;
 }
 
+/// Both records and what both say of all images.
+struct Records {
+  Records(const std::filesystem::path& folder_a, const std::filesystem::path& folder_b)
+      : a(read_dataset_manifest(folder_a)),
+        b(read_dataset_manifest(folder_b)),
+        common(common_of(a, b)) {}
+  DatasetRecord a, b;
+  Common common;
+};
+
+void compare(const ManifestLines& x, const ManifestLines& y, const Records& records,
+             DatasetDifference& found) {
+  const ImageRecord a = x.record(), b = y.record();
+  ChangedImage image = compare(a, b, records.common, is_same_shape(records.a, records.b, a.model));
+  if (image.parts.empty() && image.fields.empty() && image.files.empty())
+    ++found.same;
+  else
+    found.changed.push_back(std::move(image));
+}
+
 }  // namespace
 
-DatasetDifference compare_datasets(const DatasetRecord& a, const std::vector<ImageRecord>& images_a,
-                                   const DatasetRecord& b,
-                                   const std::vector<ImageRecord>& images_b) {
+DatasetDifference compare_datasets(const std::filesystem::path& a, const std::filesystem::path& b) {
   DatasetDifference found;
-  const Common common = common_of(a, b);
-  auto x = images_a.begin();
-  auto y = images_b.begin();
-  while (x != images_a.end() || y != images_b.end()) {
-    if (y == images_b.end() || (x != images_a.end() && x->id < y->id)) {
-      found.only_a.push_back(&*x++);
-    } else if (x == images_a.end() || y->id < x->id) {
-      found.only_b.push_back(&*y++);
+  ManifestLines x(a), y(b);
+  const Records records(a, b);
+  while (!x.at_end() || !y.at_end()) {
+    if (y.at_end() || (!x.at_end() && x.id() < y.id())) {
+      found.only_a.push_back(x.id());
+      x.next();
+    } else if (x.at_end() || y.id() < x.id()) {
+      found.only_b.push_back(y.id());
+      y.next();
     } else {
-      ChangedImage image = compare(*x, *y, common, is_same_shape(a, b, x->model));
-      ++x;
-      ++y;
-      if (image.parts.empty() && image.fields.empty() && image.files.empty())
+      if (x.text() == y.text())
         ++found.same;
       else
-        found.changed.push_back(std::move(image));
+        compare(x, y, records, found);
+      x.next();
+      y.next();
     }
   }
   found.dataset_fields = differing_fields(
-      json::parse(to_json(a)), json::parse(to_json(b)),
+      json::parse(to_json(records.a)), json::parse(to_json(records.b)),
       [](const std::string& name) { return name == "concerns" || name == "counts"; });
   return found;
 }

@@ -32,7 +32,7 @@ FileComparison compare_files(const fs::path& a, const fs::path& b,
 
 FileComparison compare_files(const fs::path& folder_a, const fs::path& folder_b,
                              const ChangedFile& file, std::vector<std::byte>* picture) {
-  DS_ASSERT(file.a != nullptr && file.b != nullptr);
+  DS_ASSERT(file.a && file.b);
   const auto read = [](const fs::path& folder, const FileRecord& record) {
     return decoded(read_checked(folder, record), folder / record.path);
   };

@@ -2,6 +2,9 @@
 """dsbuild diff: two datasets, or two image files."""
 import collections
 import json
+import os
+import subprocess
+import sys
 
 import image_reader
 from harness import IMAGES, TinyCase, main
@@ -52,6 +55,37 @@ class DiffTest(TinyCase):
         self.assertIn("in A alone: 4: tetra.ply/0, tetra.ply/1, tetra.ply/2, tetra.ply/3\n", text)
         self.assertRegex(text, r"differ in .*engine.*: \d: ")
         self.assertRegex(text, r"  image: \d files, the worst: images/\S+\.png: \d+ of 1024 pixels, largest \S+ at \d+, \d+, RMS ")
+
+    def most_memory(self, a, b):
+        """In bytes, of a diff that finds nothing."""
+        # A sanitizer would keep what is freed.
+        environment = {**os.environ, "ASAN_OPTIONS": os.environ.get("ASAN_OPTIONS", "") + ":quarantine_size_mb=1"}
+        # What is forked has its parent's memory for a moment, which is to be little.
+        small = ("import os, sys\n"
+                 "_, status, usage = os.wait4(os.posix_spawn(sys.argv[1], sys.argv[1:], os.environ), 0)\n"
+                 "print(os.waitstatus_to_exitcode(status), usage.ru_maxrss)")
+        run = subprocess.run([sys.executable, "-c", small, *self.command("diff", a, b)], cwd=self.folder, env=environment,
+                             capture_output=True, text=True, check=True)
+        code, kilobytes = map(int, run.stdout.splitlines()[-1].split())
+        self.assertEqual(code, 0, run)
+        return kilobytes * 1024
+
+    def test_lines_that_are_the_same_are_not_kept(self):
+        self.build()
+        manifest = self.out / "manifest/images.jsonl"
+        lines, large = manifest.read_text().splitlines(), []
+        for name in range(1500):
+            for view, line in enumerate(lines):
+                large.append(line.replace(json.loads(line)["id"], f"m{name:05}.off/{view}"))
+        datasets = [self.folder / name for name in ("few", "few-too", "many", "many-too")]
+        for folder, text in zip(datasets, [lines, lines, large, large]):
+            (folder / "manifest").mkdir(parents=True)
+            (folder / "manifest/images.jsonl").write_text("\n".join(text) + "\n")
+            (folder / "manifest/dataset.json").write_bytes((self.out / "manifest/dataset.json").read_bytes())
+        size = (datasets[2] / "manifest/images.jsonl").stat().st_size
+        self.assertGreater(size, 24e6)
+        self.assertLess(self.most_memory(*datasets[2:]), self.most_memory(*datasets[:2]) + size / 4)
+        self.assertIn(f"{len(large)} images are the same, 0 differ", self.diff(*datasets[2:], code=0).out)
 
     def test_a_material_of_another_program_is_no_engine_and_no_model(self):
         self.build()

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "manifests/diff/datasets.h"
 
+#include "tracer/base/error.h"
+#include "tracer/base/files.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,6 +20,7 @@ std::vector<ImageRecord> images_of(const std::vector<std::string>& ids) {
   for (const std::string& id : ids) {
     ImageRecord image;
     image.id = image.model = id;
+    image.intrinsics.emplace();
     image.files = {{id + ".png", "image", {}, {}}, {id + ".mask.png", "mask", {}, {}}};
     image.files[0].hashes.xxh128 = hash_text(id);
     images.push_back(std::move(image));
@@ -24,27 +28,57 @@ std::vector<ImageRecord> images_of(const std::vector<std::string>& ids) {
   return images;
 }
 
-DatasetDifference compare(const std::vector<ImageRecord>& a, const std::vector<ImageRecord>& b) {
-  return compare_datasets({}, a, {}, b);
+/// Of manifests as they are written.
+DatasetDifference compare(const DatasetRecord& a, const std::vector<ImageRecord>& images_a,
+                          const DatasetRecord& b, const std::vector<ImageRecord>& images_b) {
+  const TemporaryFolder temporary;
+  const std::filesystem::path folder = temporary.path();
+  write_manifest(folder / "a", a, images_a);
+  write_manifest(folder / "b", b, images_b);
+  return compare_datasets(folder / "a", folder / "b");
 }
 
-std::vector<std::string> ids(const std::vector<const ImageRecord*>& images) {
-  std::vector<std::string> names;
-  for (const ImageRecord* image : images)
-    names.push_back(image->id);
-  return names;
+DatasetDifference compare(const std::vector<ImageRecord>& a, const std::vector<ImageRecord>& b) {
+  return compare({}, a, {}, b);
 }
 
 TEST(CompareDatasets, FindsWhatIsInOneAlone) {
   const auto a = images_of({"a", "b", "d", "e"}), b = images_of({"b", "c", "e", "f"});
   const DatasetDifference found = compare(a, b);
-  EXPECT_THAT(ids(found.only_a), ElementsAre("a", "d"));
-  EXPECT_THAT(ids(found.only_b), ElementsAre("c", "f"));
+  EXPECT_THAT(found.only_a, ElementsAre("a", "d"));
+  EXPECT_THAT(found.only_b, ElementsAre("c", "f"));
   EXPECT_EQ(found.same, 2u);
   EXPECT_THAT(found.changed, IsEmpty());
   EXPECT_TRUE(found.images_differ());
   EXPECT_FALSE(compare(a, a).images_differ());
-  EXPECT_THAT(ids(compare(a, {}).only_a), ElementsAre("a", "b", "d", "e"));
+  EXPECT_THAT(compare(a, {}).only_a, ElementsAre("a", "b", "d", "e"));
+}
+
+/// Lines that are the same are not taken apart, and one that is no line of a manifest is told all the same.
+TEST(CompareDatasets, TellsWhatIsNoManifest) {
+  const TemporaryFolder temporary;
+  const std::filesystem::path folder = temporary.path();
+  const auto images = images_of({"a", "b \"quoted\"", "c"});
+  for (const char* name : {"a", "b"})
+    write_manifest(folder / name, {}, images);
+  EXPECT_EQ(compare_datasets(folder / "a", folder / "b").same, 3u);
+  const std::string text = read_text_file(folder / "a/manifest/images.jsonl");
+  const std::size_t second = text.find('\n') + 1;
+  for (const auto& [wrong, told] : std::vector<std::pair<std::string, std::string>>{
+           {text.substr(0, text.size() - 1), ":3: must end in a line break"},
+           {text + text.substr(0, second), ":4: ids must ascend, found a behind c"},
+           {text.substr(0, second) + text, ":2: ids must ascend, found a behind a"},
+           {text.substr(0, second) + "{}\n" + text.substr(second), ":2: "}}) {
+    for (const char* name : {"a", "b"})
+      write_file_atomic(folder / (std::string(name) + "/manifest/images.jsonl"), wrong);
+    try {
+      compare_datasets(folder / "a", folder / "b");
+      ADD_FAILURE() << told;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("images.jsonl" + told));
+    }
+  }
+  EXPECT_THROW(compare_datasets(folder / "a", folder / "nowhere"), Error);
 }
 
 TEST(CompareDatasets, NamesPartsFieldsAndFiles) {
@@ -67,7 +101,7 @@ TEST(CompareDatasets, NamesPartsFieldsAndFiles) {
   EXPECT_THAT(found.changed[1].files, IsEmpty());
   EXPECT_THAT(found.changed[2].parts, IsEmpty());
   ASSERT_EQ(found.changed[2].files.size(), 2u);
-  EXPECT_EQ(found.changed[2].files[0].a, nullptr);
+  EXPECT_FALSE(found.changed[2].files[0].a);
   EXPECT_TRUE(found.changed[2].files[1].is_same_picture());
 }
 
@@ -81,7 +115,7 @@ std::vector<std::string> parts_named(const std::vector<std::size_t>& differing,
   for (const std::size_t part : differing)
     others[0].parts[part] = Hash128{1, 2};
   if (change) change(others[0]);
-  return compare_datasets(a, images, b, others).changed.at(0).parts;
+  return compare(a, images, b, others).changed.at(0).parts;
 }
 
 DatasetRecord dataset_of(const std::string& recipe_text) {
@@ -150,7 +184,7 @@ TEST(CompareDatasets, NamesWhatDiffersInTheDatasetsRecord) {
   DatasetRecord a, b;
   b.licence = "CC0-1.0";
   b.counts = {{"images", 3}};
-  EXPECT_THAT(compare_datasets(a, {}, b, {}).dataset_fields, ElementsAre("licence"));
+  EXPECT_THAT(compare(a, {}, b, {}).dataset_fields, ElementsAre("licence"));
 }
 
 }  // namespace
