@@ -45,6 +45,12 @@ class Csv : public Exporter {
   }
   void finish() override { table_.close(); }
 
+  /// All in one split: which row is of which of the dataset's, the table's column says.
+  std::string card_lines() const override {
+    return "configs:\n- config_name: default\n  data_files:\n  - split: images\n    path: "
+           "images.csv\n";
+  }
+
  private:
   const ExportInput& input_;
   ExportFolder& to_;

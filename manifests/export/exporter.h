@@ -67,8 +67,11 @@ class Exporter {
   virtual ~Exporter() = default;
   virtual void add(const ExportImage& image) = 0;
   virtual void finish() = 0;
-  /// Lines for the front matter of the export's card, once it is finished.
-  virtual std::string card_lines() const { return ""; }
+  /// Lines for the front matter of the export's card, once it is finished. Without any, Hugging Face's datasets
+  /// makes labels of folders' names, whatever they are: these say that nothing here is for it.
+  virtual std::string card_lines() const {
+    return "viewer: false\nconfigs:\n- config_name: default\n  data_files: []\n";
+  }
 };
 
 /// A format of `dsbuild export`: NAME.cc and its line in CMakeLists.txt.

@@ -97,6 +97,8 @@ class WebDataset : public Exporter {
         image.split, to_, fmt::format("{}-{}", input_.dataset.name, image.split));
     at->second.add(members);
   }
+  /// Shards by their splits' names are what the library looks for by itself.
+  std::string card_lines() const override { return ""; }
   void finish() override {
     for (auto& [split, shards] : shards_)
       shards.close();

@@ -51,6 +51,21 @@ class ConsumersTest(TinyCase):
     def load(self, *arguments, **options):
         return datasets.load_dataset(*arguments, cache_dir=str(self.folder / "cache"), **options)
 
+    def test_formats_for_other_readers_are_no_image_folders(self):
+        """Of folders' names the library would make labels that are none (of coco's: train and test)."""
+        for name in ("bop", "coco", "nerf", "yolo", "yolo_seg"):
+            with self.subTest(format=name):
+                self.to = self.folder / name
+                self.export(name)
+                with self.assertRaisesRegex(datasets.exceptions.DataFilesNotFoundError, "No .*data files"):
+                    self.load(str(self.to))
+        self.to = self.folder / "csv"
+        self.export("csv")
+        table = self.load(str(self.to))
+        self.assertEqual(list(table), ["images"])
+        self.assertEqual(dict(zip(table["images"]["id"], table["images"]["split"])),
+                         {name: record["split"] for name, record in self.records.items()})
+
     def test_coco(self):
         self.export("coco")
         seen = 0
