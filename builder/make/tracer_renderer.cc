@@ -74,11 +74,11 @@ class TracerRenderer : public Renderer {
     SceneUse use;
   };
   std::string name_of(const ImageSpec& image) const {
-    return fmt::format("{}\n{}\n{}\n{}{}{}{}{}", image.model_file->native(),
-                       image.material_file->native(), image.environment_folder->native(),
-                       canonical_change(change_of(image)), canonical_lights(image.lights),
-                       canonical_model({}, {}, normalise_of(image, recipe_)),
-                       canonical_vary(image, recipe_), name_of_distractors(image));
+    return fmt::format(
+        "{}\n{}\n{}\n{}{}{}{}{}", image.model_file->native(), image.material_file->native(),
+        image.environment_folder->native(), canonical_change(change_of(image, recipe_, inputs_)),
+        canonical_lights(image.lights), canonical_model({}, {}, normalise_of(image, recipe_)),
+        canonical_vary(image, recipe_), name_of_distractors(image));
   }
 
   std::string name_of_distractors(const ImageSpec& image) const {

@@ -114,7 +114,7 @@ std::string canonical_colours(const Scene& scene) {
   return canonical_material(dark);
 }
 
-EnvironmentFacts facts_of(const Scene& environment) {
+EnvironmentFacts facts_of(const Scene& environment, const std::string& nodes) {
   std::uint32_t largest_object_id = 0;
   for (const Object& object : environment.objects)
     largest_object_id = std::max(largest_object_id, object.id);
@@ -128,7 +128,8 @@ EnvironmentFacts facts_of(const Scene& environment) {
           environment.unlikely,
           largest_object_id,
           largest_material_id(environment),
-          gain_changes_program(environment)};
+          gain_changes_program(environment),
+          nodes};
 }
 
 std::string to_text(const EnvironmentFacts& facts, const std::vector<SourceFile>& files) {
@@ -146,7 +147,8 @@ std::string to_text(const EnvironmentFacts& facts, const std::vector<SourceFile>
                 {"unlikely", facts.unlikely},
                 {"largest_object_id", facts.largest_object_id},
                 {"largest_material_id", facts.largest_material_id},
-                {"gain_changes_program", facts.gain_changes_program}}
+                {"gain_changes_program", facts.gain_changes_program},
+                {"nodes", facts.nodes}}
         .dump();
   } catch (const json::exception&) {  // a name that is no UTF-8
     return "";
@@ -167,7 +169,8 @@ std::optional<EnvironmentFacts> facts_from_text(const std::string& text) {
                             object.at("unlikely").get<bool>(),
                             object.at("largest_object_id").get<std::uint32_t>(),
                             object.at("largest_material_id").get<std::uint32_t>(),
-                            object.at("gain_changes_program").get<bool>()};
+                            object.at("gain_changes_program").get<bool>(),
+                            object.at("nodes").get<std::string>()};
   } catch (const json::exception&) {
     return std::nullopt;
   } catch (const Error&) {  // a file that cannot be looked at: reading it says why

@@ -26,6 +26,7 @@ struct EnvironmentFacts {
   bool unlikely = false;      ///< something of its files is hardly meant (Scene::unlikely)
   std::uint32_t largest_object_id = 0, largest_material_id = 0;
   bool gain_changes_program = false;  ///< see vary.h
+  std::string nodes;                  ///< EnvironmentSource::nodes
 };
 
 /// What of an object a plane reads beside its places: its traits of kernels/plane_traits.h that say
@@ -38,7 +39,7 @@ std::uint32_t largest_material_id(const Scene& scene);
 /// Canonical text of materials and textures, whatever shines of them.
 std::string canonical_colours(const Scene& scene);
 
-EnvironmentFacts facts_of(const Scene& environment);
+EnvironmentFacts facts_of(const Scene& environment, const std::string& nodes = "");
 
 /// A file that an environment was read from, and its stamp; none where there was no such file.
 struct SourceFile {

@@ -52,21 +52,21 @@ void check_vary(const Recipe& recipe, Inputs& inputs) {
       const PropertyFit fit = fit_of(inputs.material(file), vary.pattern);
       any = any || fit.count > 0;
       if (fit.flag)
-        diagnostics.add(vary.place, "materials.vary {:?} names a switch of {}, which is not drawn",
+        diagnostics.add(vary.value.place, "materials.vary {:?} names a switch of {}, which is not drawn",
                         vary.pattern, file.filename().string());
       if (fit.count > 0 && !fit.colour &&
           recipe.drawn[vary.drawn].distribution.kind == DrawnKind::colour)
-        diagnostics.add(vary.place,
+        diagnostics.add(vary.value.place,
                         "materials.vary {:?} is one number in {}, and a colour is drawn for it",
                         vary.pattern, file.filename().string());
       if (fit.count == 0 && !vary.optional)
-        diagnostics.add(vary.place,
+        diagnostics.add(vary.value.place,
                         "materials.vary {:?} must name a property of each material, found none in "
                         "{}; with a ? behind it such a material is left as it is",
                         vary.pattern, file.filename().string());
     }
     if (!any && vary.optional)
-      diagnostics.add(vary.place, "materials.vary {:?} names no property of any material",
+      diagnostics.add(vary.value.place, "materials.vary {:?} names no property of any material",
                       vary.pattern + "?");
   }
   diagnostics.throw_if_any();
@@ -118,10 +118,15 @@ Hash128 program_share_of(const Scene& material) {
 }
 
 Scene scene_without_model(const Recipe& recipe, Inputs& inputs, const ImageSpec& image) {
-  EnvironmentChange gain = change_of(image);
-  gain.turn_deg = 0;
-  const Scene& environment = inputs.environment(image.environment_folder);
-  Scene scene = gain == EnvironmentChange{} ? environment : changed(environment, gain);
+  EnvironmentChange change = change_of(image, recipe, inputs);
+  change.turn_deg = 0;
+  const std::filesystem::path& folder = image.environment_folder;
+  Scene scene = changed(change.values.empty()
+                            ? inputs.environment(folder)
+                            : with_node_values(inputs.environment(folder),
+                                               inputs.environment_facts(folder).nodes, folder,
+                                               change.values),
+                        change);
   scene.lights.insert(scene.lights.end(), image.lights->begin(), image.lights->end());
   for (const Distractor& one : *image.distractors) {
     Scene material = material_of(one, inputs);

@@ -5,11 +5,19 @@
 #include "builder/plan/image_material.h"
 #include "builder/plan/image_scene.h"
 
+#include <utility>
+
 namespace ds {
 
 ImageParts parts_of(const ImageSpec& image, const Recipe& recipe, Inputs& inputs) {
-  ImageParts parts{
-      &inputs.environment(image.environment_folder), change_of(image), {}, image.lights};
+  ImageParts parts{&inputs.environment(image.environment_folder),
+                   image.environment_folder,
+                   {},
+                   change_of(image, recipe, inputs),
+                   {},
+                   image.lights};
+  if (!parts.change.values.empty())
+    parts.nodes = inputs.environment_facts(image.environment_folder).nodes;
   for (const Distractor& one : *image.distractors) {
     parts.objects.push_back({{one.id(), distractor_name(one)},
                              material_of(one, inputs),
@@ -23,8 +31,10 @@ ImageParts parts_of(const ImageSpec& image, const Recipe& recipe, Inputs& inputs
 }
 
 Scene scene_of(const ImageParts& parts, ModelMeshes& meshes) {
-  Scene scene = parts.change == EnvironmentChange{} ? *parts.environment
-                                                    : changed(*parts.environment, parts.change);
+  Scene scene = parts.change.values.empty() ? *parts.environment
+                                            : with_node_values(*parts.environment, parts.nodes,
+                                                               parts.folder, parts.change.values);
+  scene = changed(std::move(scene), parts.change);
   scene.lights.insert(scene.lights.end(), parts.lights.begin(), parts.lights.end());
   for (const ShownObject& object : parts.objects)
     add_object(scene, object.material, meshes.get(object.source), object.called);

@@ -7,6 +7,8 @@
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/vary.h"
 
+#include <filesystem>
+#include <string>
 #include <vector>
 
 namespace ds {
@@ -21,6 +23,8 @@ struct ShownObject {
 /// What an image's scene is made of: found out in one thread, it can be put together in another.
 struct ImageParts {
   const Scene* environment = nullptr;  ///< of the Inputs asked
+  std::filesystem::path folder;        ///< of the environment
+  std::string nodes;                   ///< EnvironmentFacts::nodes, where the change has values
   EnvironmentChange change;
   std::vector<ShownObject> objects;  ///< the model last
   std::vector<Light> lights;         ///< beside the environment's

@@ -2,6 +2,7 @@
 #include "builder/plan/image_scene.h"
 
 #include "builder/plan/distractors.h"
+#include "builder/plan/environment_vary.h"
 #include "tracer/base/canonical.h"
 #include "tracer/base/error.h"
 
@@ -81,14 +82,21 @@ CameraEffects effects_of(const ImageSpec& image) {
           image.engine.seed};
 }
 
-EnvironmentChange change_of(const ImageSpec& image) {
-  const Variables& values = image.variables->values;
-  return {values.environment_turn_deg, values.environment_gain, values.environment_temperature_k};
+double turn_of(const ImageSpec& image) {
+  return image.variables->values.environment_turn_deg;
 }
 
-std::string canonical_turn(const EnvironmentChange& change) {
+EnvironmentChange change_of(const ImageSpec& image, const Recipe& recipe, Inputs& inputs) {
+  const Variables& values = image.variables->values;
+  EnvironmentChange change{turn_of(image), values.environment_gain,
+                           values.environment_temperature_k};
+  if (!recipe.environment_vary.empty()) change.values = environment_values(image, recipe, inputs);
+  return change;
+}
+
+std::string canonical_turn(double turn_deg) {
   CanonicalText text;
-  if (change.turn_deg != 0) text.add("environments.turn_deg", change.turn_deg);
+  if (turn_deg != 0) text.add("environments.turn_deg", turn_deg);
   return text.text();
 }
 
@@ -96,7 +104,8 @@ std::string canonical_change(const EnvironmentChange& change) {
   CanonicalText text;
   if (change.gain != 1) text.add("environments.gain", change.gain);
   if (change.temperature_k != 0) text.add("environments.temperature_k", change.temperature_k);
-  return canonical_turn(change) + text.text();
+  return canonical_turn(change.turn_deg) + text.text() +
+         canonical_values(change.values, ValuesOf::all);
 }
 
 }  // namespace ds

@@ -44,9 +44,11 @@ class ImageSettler {
 CameraEffects effects_of(const ImageSpec& image);
 
 /// What of its environment is the image's own.
-EnvironmentChange change_of(const ImageSpec& image);
+EnvironmentChange change_of(const ImageSpec& image, const Recipe& recipe, Inputs& inputs);
+/// EnvironmentChange::turn_deg of it.
+double turn_of(const ImageSpec& image);
 /// Canonical text of what moves geometry and of what moves light; "" where nothing changes.
-std::string canonical_turn(const EnvironmentChange& change);
+std::string canonical_turn(double turn_deg);
 std::string canonical_change(const EnvironmentChange& change);
 
 }  // namespace ds

@@ -7,6 +7,7 @@
 #include "tracer/base/files.h"
 #include "tracer/base/hash_stream.h"
 #include "tracer/base/log.h"
+#include "tracer/base/name_pattern.h"
 #include "tracer/render/images.h"
 #include "tracer/render/render.h"
 #include "tracer/scene/mesh_shape.h"
@@ -304,14 +305,15 @@ const Scene& Inputs::environment(const std::filesystem::path& folder) {
   return once(environments_, folder, [this](const auto& path) {
     const std::int64_t began_ns = now_ns();
     const std::uint64_t warnings = warning_count();
-    std::vector<std::filesystem::path> files;
-    Scene scene = read_environment(path, &files,
+    EnvironmentSource source;
+    Scene scene = read_environment(path, &source,
                                    [this](const auto& image) { return content_of_file(image); });
+    environment_nodes_[path.native()] = source.nodes;
     look_at_pixels(scene);
     // What there is to warn of is to be said by each command.
     if (warning_count() == warnings)
-      if (const auto sources = settled(files, began_ns))
-        keep_known(question_of(path), to_text(facts_of(scene), *sources));
+      if (const auto sources = settled(source.files, began_ns))
+        keep_known(question_of(path), to_text(facts_of(scene, source.nodes), *sources));
     return scene;
   });
 }
@@ -320,8 +322,27 @@ const EnvironmentFacts& Inputs::environment_facts(const std::filesystem::path& f
   return once(environment_facts_, folder, [this](const auto& path) {
     if (const auto known = find_known(question_of(path)))
       if (auto facts = facts_from_text(*known)) return *std::move(facts);
-    return facts_of(environment(path));
+    const Scene& scene = environment(path);
+    return facts_of(scene, environment_nodes_.at(path.native()));
   });
+}
+
+const std::vector<NodeProperty>& Inputs::environment_properties(
+    const std::filesystem::path& folder) {
+  return once(environment_properties_, folder, [this](const auto& path) {
+    return node_properties(environment_facts(path).nodes, path);
+  });
+}
+
+const std::vector<const NodeProperty*>& Inputs::environment_fits(
+    const std::filesystem::path& folder, const std::string& nodes, const std::string& property) {
+  const auto& properties = environment_properties(folder);
+  const auto [at, is_new] =
+      environment_fits_.try_emplace(fmt::format("{}\n{}.{}", folder.native(), nodes, property));
+  if (is_new)
+    for (const NodeProperty& one : properties)
+      if (one.name == property && fits_pattern(one.node, nodes)) at->second.push_back(&one);
+  return at->second;
 }
 
 std::optional<std::string> Inputs::find_known(const std::string& question) {

@@ -11,6 +11,7 @@
 #include "tracer/scene/own_materials.h"
 #include "tracer/scene/scene.h"
 #include "tracer/scene/texture_bounds.h"
+#include "tracer/scene/vary_nodes.h"
 
 #include <filesystem>
 #include <map>
@@ -126,6 +127,13 @@ class Inputs {
   /// reading it, unless there was anything to warn of.
   const EnvironmentFacts& environment_facts(const std::filesystem::path& folder);
 
+  /// What of an environment's lights, materials and textures may be drawn.
+  const std::vector<NodeProperty>& environment_properties(const std::filesystem::path& folder);
+  /// Those of a name ("emission.gain") of nodes whose names fit a pattern.
+  const std::vector<const NodeProperty*>& environment_fits(const std::filesystem::path& folder,
+                                                           const std::string& nodes,
+                                                           const std::string& property);
+
   /// What this program found out before, of a question that says all that the answer depends on.
   std::optional<std::string> find_known(const std::string& question);
   void keep_known(const std::string& question, std::string answer);
@@ -178,6 +186,9 @@ class Inputs {
   Known<Scene> materials_, own_scenes_, environments_;
   Known<OwnMaterials> own_materials_;
   Known<EnvironmentFacts> environment_facts_;
+  std::unordered_map<std::string, std::string> environment_nodes_;  ///< of environments_
+  Known<std::vector<NodeProperty>> environment_properties_;
+  std::unordered_map<std::string, std::vector<const NodeProperty*>> environment_fits_;
   std::string program_;  ///< running_program
   std::map<std::string, std::string> new_known_;
   Known<Hash128> contents_;  ///< of images and models' parts

@@ -3,6 +3,7 @@
 
 #include "builder/plan/alike.h"
 #include "builder/plan/distractors.h"
+#include "builder/plan/environment_vary.h"
 #include "builder/plan/image_material.h"
 #include "builder/plan/image_scene.h"
 #include "builder/plan/output_kinds.h"
@@ -41,62 +42,12 @@ std::string_view view_of_digits(const fmt::format_int& number) {
   return {number.data(), number.size()};
 }
 
-const char* name_of(Centring centre) {
-  return centre == Centring::none ? "none" : centre == Centring::mass ? "mass" : "box";
-}
-
-const char* name_of(Normals normals) {
-  return normals == Normals::smooth ? "smooth" : normals == Normals::keep ? "keep" : "flat";
-}
-
-}  // namespace
-
-const ToneMap& tone_map_of(const Recipe& recipe, const Scene& environment) {
-  return recipe.outputs.tone_map ? *recipe.outputs.tone_map : environment.tone_map;
-}
-const ToneMap& tone_map_of(const Recipe& recipe, const EnvironmentFacts& environment) {
-  return recipe.outputs.tone_map ? *recipe.outputs.tone_map : environment.tone_map;
-}
-
-std::string canonical_model(const MeshHashes& mesh, MeshExtras reads,
-                            const NormaliseOptions& options) {
-  CanonicalText text;
-  text.add("geometry", mesh.shape.hex());
-  if (reads.uvs && mesh.uvs != Hash128{}) text.add("uvs", mesh.uvs.hex());
-  if (reads.colors && mesh.colors != Hash128{}) text.add("colors", mesh.colors.hex());
-  text.add("up", options.up == UpAxis::y ? "y" : "z");
-  if (options.size_m != 0) text.add("size_m", options.size_m);
-  if (options.place_on_ground) text.add("ground_z_m", options.ground_z_m);
-  text.add("centre", name_of(options.centre));
-  if (turns(options)) text.add("turn", std::span<const double>(options.turn));
-  if (options.place_m != NormaliseOptions{}.place_m)
-    text.add("place_m", std::span<const double>(options.place_m));
-  if (!reads.normals) return text.text();
-  text.add("normals", name_of(options.normals));
-  if (options.normals == Normals::smooth) text.add("crease_deg", options.crease_deg);
-  if (options.normals == Normals::keep) text.add("kept_normals", mesh.normals.hex());
-  return text.text();
-}
-
-namespace {
-
 /// The five parts of the render key behind what `head` holds.
 TextForm form_of_parts(CanonicalText head) {
   for (std::size_t i = 0; i < 5; ++i)
     head.add(k_part_names[i], "");
   return {head.text(), std::span(k_part_names).first<5>()};
 }
-
-}  // namespace
-
-Hash128 render_key(const PartHashes& parts) {
-  CanonicalText text;
-  for (std::size_t i = 0; i < 5; ++i)
-    text.add(k_part_names[i], parts[i].hex());
-  return hash_text(text.text());
-}
-
-namespace {
 
 /// What images from one camera in one environment share.
 struct View {
@@ -144,27 +95,27 @@ struct MaterialHashes {
 };
 
 /// Whether the image's gain makes another program.
-bool is_gained(const ImageSpec& image, const Environment& environment) {
-  return environment.gain_changes_program && is_gain(change_of(image));
+bool is_gained(const EnvironmentChange& change, const Environment& environment) {
+  return environment.gain_changes_program && is_gain(change);
 }
 
 /// All that the kinds of effects in an image depend on; `material` names what of its material does. What constants a
 /// material has is no part of them, so that images with other values of the same properties are of one kind.
-/// `others`: DistractorTexts::programs. `lit`: kinds_of_lights.
-std::string kind_name(const ImageSpec& image, const Environment& environment, Hash128 material,
-                      const std::string& others, const std::string& lit) {
+/// `others`: DistractorTexts::programs. `lit`: lights_and_changes.
+std::string kind_name(const ImageSpec& image, const Environment& environment, bool gained,
+                      Hash128 material, const std::string& others, const std::string& lit) {
   return fmt::format("{} {} {}{}{}{}{}{}", material.hex(), environment.part.hex(),
                      image.camera.lens_radius_m > 0 ? "lens" : "pinhole",
-                     is_gained(image, environment) ? " gained" : "", others.empty() ? "" : " with ",
-                     others, lit.empty() ? "" : " lit by ", lit);
+                     gained ? " gained" : "", others.empty() ? "" : " with ", others, lit.empty() ? "" : " lit by ", lit);
 }
 
-/// What of the lights beside its environment's an image's program depends on.
-std::string kinds_of_lights(const ImageSpec& image) {
+/// What of the lights beside its environment's, and of that environment's values, an image's program depends on.
+std::string lights_and_changes(const ImageSpec& image, const EnvironmentChange& change) {
   std::set<std::string_view> kinds;
   for (const Light& light : *image.lights)
     if (shines(light)) kinds.insert(type_of(light).kernel_prefix);
-  return fmt::format("{}", fmt::join(kinds, " "));
+  const std::string values = program_share_of(change.values);
+  return fmt::format("{}{}{}", fmt::join(kinds, " "), values.empty() ? "" : " changed ", values);
 }
 
 }  // namespace
@@ -182,6 +133,7 @@ class KeyMaker::State {
   Environment& environment_of(const ImageSpec& image);
   View& view_of(Environment& environment, const ImageSpec& image);
   Kind& kind_of(const ImageSpec& image, const Environment& environment);
+  EnvironmentChange changed(const ImageSpec& image) { return change_of(image, recipe_, inputs_); }
   const std::string& program(const ImageSpec& image);
   Hash128 program_hash(const ImageSpec& image, const std::string& kind);
   MaterialHashes material_of_image(const Kind& kind, const ImageSpec& image);
@@ -190,7 +142,7 @@ class KeyMaker::State {
                        const Environment& environment, View& view, Kind& kind,
                        const ImageSpec& image);
   std::string text_of_view(const ImageSpec& image) {
-    return canonical_camera(image.camera) + canonical_change(change_of(image)) +
+    return canonical_camera(image.camera) + canonical_change(changed(image)) +
            canonical_lights(image.lights) + distractors_.of_picture(image);
   }
   void add_outputs(ImageKeys& keys, Hash128 colours, Environment& environment, View& view,
@@ -265,20 +217,21 @@ Environment& KeyMaker::State::environment_of(const ImageSpec& image) {
 View& KeyMaker::State::view_of(Environment& environment, const ImageSpec& image) {
   View& view = environment.views[image.view.identity()];
   const EngineSettings& engine = image.engine;
-  const EnvironmentChange change = change_of(image);
+  EnvironmentChange change = changed(image);
   if (view.width == engine.width && view.height == engine.height &&
       same(view.camera, image.camera) && view.change == change)
     return view;
   view.name = image.view;
   view.camera = image.camera;
-  view.change = change;
+  view.change = std::move(change);
   view.width = engine.width;
   view.height = engine.height;
-  view.part = hash_text(texts_.fold(canonical_camera(image.camera) + canonical_change(change)));
+  view.part = hash_text(texts_.fold(canonical_camera(image.camera) + canonical_change(view.change)));
   view.planes.clear();
   for (const WantedPlane& plane : planes_)
     view.planes.push_back(is_of_light(*plane.type) ? TextForm()
-                                                   : plane_form(plane, environment.shapes, image));
+                                                   : plane_form(plane, environment.shapes, image,
+                                                                view.change));
   return view;
 }
 
@@ -303,7 +256,8 @@ Hash128 KeyMaker::State::traced_plane(std::size_t number, const PartHashes& part
   TextForm own;
   const bool alone = (plane.type->traits & kernels::k_plane_alone) != 0;
   if (!image.distractors->empty() && !alone)
-    own = plane_form(plane, environment.shapes, image, distractors_.of_plane(image, *plane.type));
+    own = plane_form(plane, environment.shapes, image, view.change,
+                     distractors_.of_plane(image, *plane.type));
   TextForm& form = image.distractors->empty() || alone ? view.planes[number] : own;
   if (reads_materials(*plane.type)) {
     MeshExtras reads = kind.reads;
@@ -343,9 +297,11 @@ Hash128 KeyMaker::State::program_hash(const ImageSpec& image, const std::string&
 
 Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& environment) {
   const bool lens = image.camera.lens_radius_m > 0;
-  const std::string others = distractors_.programs(image), lit = kinds_of_lights(image);
+  const EnvironmentChange change = changed(image);
+  const bool gained = is_gained(change, environment);
+  const std::string others = distractors_.programs(image), lit = lights_and_changes(image, change);
   Kind& kind = kinds_[{image.material_file.identity(), image.environment_folder.identity(), lens,
-                       is_gained(image, environment), others, lit}];
+                       gained, others, lit}];
   if (kind.made && same_but_seed(kind.settings, image.engine)) return kind;
   EngineSettings settings = image.engine;
   settings.seed = 0;
@@ -363,7 +319,7 @@ Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& enviro
   kind.files_part = texts_.add(kind.files);
   const bool own = shows_own(image);
   const Hash128 program_name = own ? program_name_of(material) : kind.material_part;
-  const std::string of = kind_name(image, environment, program_name, others, lit);
+  const std::string of = kind_name(image, environment, gained, program_name, others, lit);
   kind.program = program_hash(image, of);
   kind.engine =
       TextForm(canonical_engine(settings, TextSet::k_reference + kind.program.hex()), {"seed"});

@@ -2,6 +2,7 @@
 #include "builder/plan/plan.h"
 
 #include "builder/plan/distractors.h"
+#include "builder/plan/environment_vary.h"
 #include "builder/plan/hash_index.h"
 #include "builder/plan/image_material.h"
 #include "builder/plan/image_scene.h"
@@ -334,6 +335,7 @@ void look_at_folder(Dataset& dataset, Plan& plan) {
 Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard, Wanted wanted) {
   check_licensed(dataset.recipe);
   check_vary(dataset.recipe, inputs);
+  check_environment_vary(dataset.recipe, inputs);
   Plan plan;
   plan.data_version = dataset.database->data_version();
   std::optional<Snapshot> snapshot(std::in_place, dataset.database->connection());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/plane_keys.h"
 
+#include "builder/plan/environment_vary.h"
 #include "builder/plan/image_material.h"
 #include "builder/plan/image_scene.h"
 #include "builder/plan/keys.h"
@@ -54,7 +55,8 @@ WantedPlane wanted_plane(const OutputKind& kind) {
 
 /// Of a plane of the model alone the environment is no part.
 TextForm plane_form(const WantedPlane& plane, const std::map<unsigned, std::string>& shapes,
-                    const ImageSpec& image, const std::string& others) {
+                    const ImageSpec& image, const EnvironmentChange& change,
+                    const std::string& others) {
   const bool alone = (plane.type->traits & kernels::k_plane_alone) != 0;
   const bool colours = reads_materials(*plane.type);
   CanonicalText text;
@@ -66,7 +68,8 @@ TextForm plane_form(const WantedPlane& plane, const std::map<unsigned, std::stri
   for (const char* part : parts)
     text.add(part, "");
   text.add("environment", alone ? "" : shapes.at(plane_reads(*plane.type)));
-  const std::string turn = alone ? "" : canonical_turn(change_of(image));
+  std::string changed = alone ? "" : canonical_turn(change.turn_deg);
+  if (colours && !alone) changed += canonical_values(change.values, ValuesOf::colours);
   add_vector(text, "camera.position", image.camera.position);
   add_vector(text, "camera.target", image.camera.target);
   add_vector(text, "camera.up", image.camera.up);
@@ -75,7 +78,7 @@ TextForm plane_form(const WantedPlane& plane, const std::map<unsigned, std::stri
   text.add(fmt::format("camera.{}", type.span_name()), span_of(image.camera));
   text.add("width", image.engine.width);
   text.add("height", image.engine.height);
-  return {text.text() + turn + others, parts};
+  return {text.text() + changed + others, parts};
 }
 
 Hash128 plane_program(const PlaneType& plane, const std::string& of, const Recipe& recipe,

@@ -6,6 +6,7 @@
 #include "builder/plan/text_form.h"
 #include "tracer/device/plane_types.h"
 #include "tracer/scene/mesh.h"
+#include "tracer/scene/vary.h"
 
 #include <map>
 #include <string>
@@ -29,9 +30,11 @@ TextForm output_form(std::string_view kind, std::string_view format,
 /// Canonical text of what a plane that asks no light is traced from, but for what differs between models and materials:
 /// the plane's program, the hash of the model, and of canonical_colours of its material, where it
 /// reads materials; else the hash of the model and the material's id.
-/// `shapes`: EnvironmentFacts::shapes. `others`: canonical, of what else is seen.
+/// `shapes`: EnvironmentFacts::shapes. `change`: change_of it. `others`: canonical,
+/// of what else is seen.
 TextForm plane_form(const WantedPlane& plane, const std::map<unsigned, std::string>& shapes,
-                    const ImageSpec& image, const std::string& others = "");
+                    const ImageSpec& image, const EnvironmentChange& change,
+                    const std::string& others = "");
 
 /// Hash of the tokens of the program that traces this plane alone in the image's scene, of which the
 /// question `of` says all that the program depends on.

@@ -125,7 +125,7 @@ Rejection ViewConditions::reject(const ImageSpec& image) {
   text.add("environment", inputs_.environment_facts(image.environment_folder).shapes.at(0));
   const std::string question =
       "keep " +
-      hash_text(text.text() + canonical_turn(change_of(image)) + canonical_camera(image.camera) +
+      hash_text(text.text() + canonical_turn(turn_of(image)) + canonical_camera(image.camera) +
                 canonical_model(inputs_.model_hashes(image.model_file), {},
                                 normalise_of(image, recipe_)) +
                 DistractorTexts(recipe_, inputs_).of_plane(image, plane_type("mask")) +
@@ -214,7 +214,7 @@ Rejection ViewConditions::look(const ImageSpec& image) {
   const Mat4 to_world = model_to_world(inputs_.model_extent(image.model_file),
                                        normalise_of(image, recipe_), image.lowest);
   const Mat4 to_model = model.to_world * portable::inverse(to_world);
-  const Mat4 to_environment = turn_back(change_of(image).turn_deg);
+  const Mat4 to_environment = turn_back(turn_of(image));
   const RayTree& environment = around(image);
   const Vec3d camera = image.camera.position;
   if (is_inside(model.tree, to_model.point(camera))) return {"inside", 0};

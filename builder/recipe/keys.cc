@@ -179,7 +179,6 @@ constexpr std::array k_own_keys = {
     KeySpec{"materials.per", images, choice, "", "\"model\"", k_any, R"("model" | "view")",
             R"(materials.assign = "random" | "balanced")",
             "Whether chance chooses once for all views of a model, or anew for each view"},
-
     KeySpec{"materials.vary", film, patterns, "", "{}", k_any, "", k_chosen_materials,
             "What is drawn of the material an image shows: by NAME.PROPERTY of its file, a "
             "distribution or a constant; see Distributions"},
@@ -237,7 +236,9 @@ constexpr std::array k_own_keys = {
             "Multiplies all light of the environment by the colour of a black body of this "
             "temperature, of luminance 1: 3000 is warm, 6500 nearly as it is, 10000 bluish. false: "
             "as it is"},
-
+    KeySpec{"environments.vary", film, patterns, "", "{}", k_any, "", "",
+            "What is drawn of its lights, materials and textures: by NAME.PROPERTY of its scene "
+            "file, or ENVIRONMENT/NAME.PROPERTY; a distribution or a constant, as materials.vary"},
     KeySpec{"lights", scene, lights, "", "[]", k_any, "", "",
             "Lights beside the environment's, each a table [[lights]] of what stands below; see "
             "Lights"},

@@ -78,12 +78,14 @@ struct SplitSettings {
   int folds = 0;                   ///< 0: none
 };
 
-/// A pattern of materials.vary.
+/// A pattern of materials.vary or environments.vary.
 struct VaryPattern {
-  std::string pattern;    ///< "*.uroughness"
-  bool optional = false;  ///< "?": materials that have no such property are left as they are
+  std::string pattern;      ///< "*.uroughness", "office/lamp.emission.gain"
+  std::string environment;  ///< which: a pattern too
+  std::string node, property;
+  bool optional = false;  ///< "?": what has no such property is left as it is
   std::size_t drawn = 0;  ///< index of Recipe::drawn
-  SourcePlace place;
+  RecipeValue value;      ///< the distribution as the recipe has it
 };
 
 /// camera.keep: what a view that was drawn must fulfil.
@@ -145,9 +147,10 @@ struct Recipe {
   KeepSettings keep;
   DistractorSettings distractors;
   std::vector<RecipeLight> lights;
-  Variables constants;       ///< of what is not drawn
-  std::vector<Drawn> drawn;  ///< by key
-  std::vector<VaryPattern> vary;
+  Variables constants;                        ///< of what is not drawn
+  std::vector<Drawn> drawn;                   ///< by key
+  std::vector<VaryPattern> vary;              ///< of materials
+  std::vector<VaryPattern> environment_vary;  ///< of what environments' files have
   std::optional<CameraFit> camera_fit;  ///< each is moved to where its image's model just fits
   std::vector<std::string> view_names;  ///< "0", "1", ...; as long as cameras
   EngineSettings engine;

@@ -128,8 +128,10 @@ json type_schema(const KeySpec& key) {
     case KeyType::patterns: {
       json values{{"type", "number"}};
       json each{{"anyOf", {values, numbers_in({}, 3)}}};
-      for (const DrawnKind kind : {DrawnKind::number, DrawnKind::colour})
-        each["anyOf"].push_back({{"$ref", fmt::format("#/$defs/{}", name_of(kind))}});
+      // Of what environments have, lights have places.
+      for (const DrawnKind kind : {DrawnKind::number, DrawnKind::colour, DrawnKind::point})
+        if (kind != DrawnKind::point || key.name.starts_with("environments."))
+          each["anyOf"].push_back({{"$ref", fmt::format("#/$defs/{}", name_of(kind))}});
       return {{"type", "object"}, {"additionalProperties", each}};
     }
     case KeyType::lights:

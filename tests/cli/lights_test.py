@@ -3,8 +3,8 @@
 import json
 import math
 
-import image_reader
-from harness import IMAGES, TinyCase, main
+from harness import IMAGES, main
+from lit_floor import LitFloorCase, dot, from_point, passes_model, scaled
 
 LIGHTS = """
 [[lights]]
@@ -23,29 +23,9 @@ gain = { uniform = [0.5, 1] }
 SETTINGS = ["--set", 'outputs.planes=["mask", "position", "geometry_normal", "direct_diffuse"]', "--set", "engine.spp=16",
             "--set", "engine.filter_width=1"]
 KD = 0.5  # of the floor
-MODEL_RADIUS = 0.14  # no model of this dataset leaves a ball of this radius around the origin
 
 
-def less(a, b):
-    return [x - y for x, y in zip(a, b)]
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b))
-
-
-def scaled(a, by):
-    return [x * by for x in a]
-
-
-def passes_model(point, way, far):
-    """Whether a segment of `far` metres from the point stays out of the ball around the model."""
-    along = min(max(-dot(point, way), 0), far)
-    nearest = [p + w * along for p, w in zip(point, way)]
-    return math.sqrt(dot(nearest, nearest)) > MODEL_RADIUS
-
-
-class LightsTest(TinyCase):
+class LightsTest(LitFloorCase):
     def setUp(self):
         super().setUp()
         self.edit("environments/floor/environment.scn", "scene.lights.sky.color = 1.0 1.0 1.0",
@@ -53,27 +33,13 @@ class LightsTest(TinyCase):
         text = self.recipe.read_text().replace('dir = "environments"', 'files = ["environments/floor"]')
         self.recipe.write_text(text + LIGHTS)
 
-    def records(self):
-        return [json.loads(line) for line in (self.out / "manifest/images.jsonl").read_text().splitlines()]
-
-    def plane(self, record, kind):
-        path = self.out / next(file["path"] for file in record["files"] if file["kind"] == kind)
-        if path.suffix == ".png":
-            return image_reader.read_png(path)[4]
-        channels = image_reader.read_exr(path)[2]
-        return list(zip(*(channels[name] for name in "RGB")))
-
     def irradiance(self, draws, point, normal):
         """Of the point by each channel; None where the model may stand before a light."""
         found = [0.0, 0.0, 0.0]
         for name in ["lights[0]", "lights[0][1]"][:draws["lights[0].count"]]:
-            way = less(draws[f"{name}.position_m"], point)
-            far = math.sqrt(dot(way, way))
-            way = scaled(way, 1 / far)
-            if not passes_model(point, way, far):
+            share = from_point(draws[f"{name}.position_m"], draws[f"{name}.gain"], point, normal)
+            if share is None:
                 return None
-            # A gain is what goes to all sides.
-            share = draws[f"{name}.gain"] / (4 * math.pi) * max(dot(way, normal), 0) / far ** 2
             found = [f + share * c for f, c in zip(found, draws[f"{name}.color"])]
         way = scaled(draws["lights[sun].from"], 0.5)
         self.assertAlmostEqual(dot(way, way), 1, places=6)
@@ -84,16 +50,9 @@ class LightsTest(TinyCase):
     def test_a_floor_is_as_light_as_what_was_drawn_makes_it(self):
         self.build(*SETTINGS, "--set", "engine.width=96", "--set", "engine.height=96")
         for record in self.records():
-            mask, position = self.plane(record, "mask"), self.plane(record, "position")
-            normal, light = self.plane(record, "geometry_normal"), self.plane(record, "direct_diffuse")
-            width = record["width"]
-            shares = [[], [], []]
-            for i in range(width + 1, len(mask) - width - 1, 5):
-                around = [i + dx + dy * width for dx in (-1, 0, 1) for dy in (-1, 0, 1)]
-                # At outlines a pixel shows two things.
-                if any(mask[j] or normal[j] == (0, 0, 0) for j in around):
-                    continue
-                falls = self.irradiance(record["draws"], position[i], normal[i])
+            light, shares = self.plane(record, "direct_diffuse"), [[], [], []]
+            for i, position, normal in self.floor(record):
+                falls = self.irradiance(record["draws"], position, normal)
                 if falls is None:
                     continue
                 for channel in range(3):

@@ -127,6 +127,14 @@ void PropertySet::set(Property property) {
   properties_[entry->second] = std::move(property);
 }
 
+void PropertySet::put(std::string name, std::vector<std::string> values) {
+  const auto [entry, is_new] = index_.emplace(name, properties_.size());
+  if (is_new)
+    properties_.push_back({std::move(name), std::move(values), {}, false});
+  else
+    properties_[entry->second].values = std::move(values);
+}
+
 void PropertySet::note_repeat(const Property& first, const Property& last) {
   const auto known =
       std::find_if(repeated_.begin(), repeated_.end(),

@@ -46,6 +46,9 @@ class PropertySet {
   /// Reads the file. Throws Error(io) where it cannot be read.
   static PropertySet read(const std::filesystem::path& file, Diagnostics& diagnostics);
 
+  /// Gives a name these values, whatever it had.
+  void put(std::string name, std::vector<std::string> values);
+
   /// Null where there is none. Does not mark it used.
   const Property* find(std::string_view name) const;
   /// As `find`, and marks the property used.

@@ -24,13 +24,18 @@ using ContentOf = std::function<Hash128(const std::filesystem::path& file)>;
 /// wanted. `content_of` is asked for images' hashes; content_hash where there is none.
 Scene read_material(const std::filesystem::path& file, const ContentOf& content_of = {});
 
+/// What an environment was read from.
+struct EnvironmentSource {
+  /// Files that were read, or looked for in vain: where none of them changes, neither does what is read.
+  std::vector<std::filesystem::path> files;
+  std::string nodes;  ///< node_lines of the scene file (vary_nodes.h)
+};
+
 /// Reads an environment folder: `environment.scn` (textures, materials, shapes, objects, lights)
 /// and, if there, `environment.cfg` (film.imagepipeline.*: tone map). PLY and image paths are
 /// relative to the folder.
-/// `files` gets the files that were read, or looked for in vain: where none of them changes, neither
-/// does what is read.
-Scene read_environment(const std::filesystem::path& folder,
-                       std::vector<std::filesystem::path>* files = nullptr,
+/// `source` gets what it was read from.
+Scene read_environment(const std::filesystem::path& folder, EnvironmentSource* source = nullptr,
                        const ContentOf& content_of = {});
 
 /// The environment with one more object: `mesh` in `material`'s last material, object id

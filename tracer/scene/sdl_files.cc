@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tracer/base/files.h"
 #include "tracer/base/log.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/sdl_prune.h"
 #include "tracer/scene/sdl_reader.h"
 #include "tracer/scene/sdl_warn.h"
+#include "tracer/scene/vary_nodes.h"
 
 #include <span>
 
@@ -46,14 +48,15 @@ Scene read_material(const std::filesystem::path& file, const ContentOf& content_
   return material;
 }
 
-Scene read_environment(const std::filesystem::path& folder,
-                       std::vector<std::filesystem::path>* files, const ContentOf& content_of) {
+Scene read_environment(const std::filesystem::path& folder, EnvironmentSource* source,
+                       const ContentOf& content_of) {
   const std::filesystem::path scene_file = folder / "environment.scn";
   const std::filesystem::path film_file = folder / "environment.cfg";
   require_file(scene_file);
   Diagnostics diagnostics(ErrorKind::asset);
-  PropertySet scene_properties = PropertySet::read(scene_file, diagnostics);
-  SdlReader reader(std::move(scene_properties), folder, diagnostics);
+  const std::string scene_text = read_text_file(scene_file);
+  SdlReader reader(PropertySet::parse(scene_text, scene_file.string(), diagnostics), folder,
+                   diagnostics);
   reader.environment = true;
   if (content_of) reader.content_of = content_of;
   mend_section_names(reader);
@@ -78,9 +81,9 @@ Scene read_environment(const std::filesystem::path& folder,
   bool unlikely = warn_of_repeats(reader.properties);
   unlikely |= warn_of_repeats(film.properties);
   unlikely |= warn_of_spare(reader, k_scene_kinds);
-  if (files != nullptr) {
-    *files = std::move(reader.files);
-    files->insert(files->end(), {scene_file, film_file});
+  if (source != nullptr) {
+    *source = {std::move(reader.files), node_lines(scene_text)};
+    source->files.insert(source->files.end(), {scene_file, film_file});
   }
   Scene environment = prune_environment(std::move(reader.scene));
   warn_of_materials(environment);

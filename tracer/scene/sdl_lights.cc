@@ -112,7 +112,7 @@ LightProperties read_inputs(const SdlNode& node, const LightReader& reader, Ligh
   return found;
 }
 
-void read_light(SdlNode node) {
+void read_node(SdlNode node) {
   if (!node.read_type()) return;
   for (const LightReader& reader : readers()) {
     if (reader.row.name != node.type()) continue;
@@ -209,9 +209,13 @@ Vec3d temperature_factor(const SdlNode& node, std::string_view property) {
   return {1, 1, 1};
 }
 
+void read_light(SdlReader& reader, const std::string& name) {
+  read_node(SdlNode(reader, SdlKind::light, name));
+}
+
 void read_lights(SdlReader& reader) {
   for (const std::string& name : reader.properties.names_below("scene.lights"))
-    read_light(SdlNode(reader, SdlKind::light, name));
+    read_light(reader, name);
 }
 
 }  // namespace ds

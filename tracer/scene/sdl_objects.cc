@@ -139,23 +139,25 @@ double area_of(const Mesh& mesh) {
   return area;
 }
 
-/// Emission by power depends on the area, so each object gets a material of its own.
-void apply_power(const SdlNode& node, Object& object) {
-  SdlReader& reader = node.reader();
+/// Of a material that is the object's own, behind the name of the one that the file has.
+std::string own_ending(const Object& object) {
+  return "@" + object.name;
+}
+
+/// Emission by power depends on the area, so each object gets a material of its own. False where there is no area.
+bool apply_power(SdlReader& reader, Object& object) {
   const auto power = reader.power_emissions.find(object.material);
-  if (power == reader.power_emissions.end()) return;
+  if (power == reader.power_emissions.end()) return true;
   const double area = area_of(object.mesh);
-  if (!(area > 0)) {
-    node.error("", "wanted an area above 0 for a material that emits by power");
-    return;
-  }
+  if (!(area > 0)) return false;
   Material material = reader.scene.materials[static_cast<std::size_t>(object.material)];
-  material.name += "@" + object.name;
+  material.name += own_ending(object);
   const double factor = power->second.radiance_times_area / area;
   material.emission =
       scaled(reader, material.name + ".emission", material.emission, Vec3d{factor, factor, factor});
   object.material = static_cast<int>(reader.scene.materials.size());
   reader.scene.materials.push_back(std::move(material));
+  return true;
 }
 
 int material_of(const SdlNode& node) {
@@ -187,7 +189,8 @@ void read_object(const SdlNode& node) {
     turn_outwards(*mesh);
   transform(*mesh, transformation);
   object.mesh = in_floats(std::move(*mesh));
-  apply_power(node, object);
+  if (!apply_power(node.reader(), object))
+    node.error("", "wanted an area above 0 for a material that emits by power");
   node.reader().scene.objects.push_back(std::move(object));
 }
 
@@ -255,6 +258,23 @@ void read_shapes(SdlReader& reader) {
 void read_objects(SdlReader& reader) {
   for (const std::string& name : reader.properties.names_below("scene.objects"))
     read_object(SdlNode(reader, SdlKind::object, name));
+}
+
+void put_objects(SdlReader& reader, const Scene& read) {
+  for (const Object& before : read.objects) {
+    Object object = before;
+    std::string name = read.materials[static_cast<std::size_t>(before.material)].name;
+    auto material = reader.materials.find(name);
+    if (const std::string ending = own_ending(before);
+        material == reader.materials.end() && name.ends_with(ending))
+      material = reader.materials.find(name.substr(0, name.size() - ending.size()));
+    if (material == reader.materials.end())
+      fail(ErrorKind::asset, "{}: the environment changed while the dataset was built",
+           reader.folder.string());
+    object.material = material->second;
+    apply_power(reader, object);  // its area is what it was
+    reader.scene.objects.push_back(std::move(object));
+  }
 }
 
 }  // namespace ds

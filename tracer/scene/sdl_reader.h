@@ -84,6 +84,11 @@ void read_materials(SdlReader& reader);
 void read_shapes(SdlReader& reader);
 void read_objects(SdlReader& reader);
 void read_lights(SdlReader& reader);
+/// One light of the section.
+void read_light(SdlReader& reader, const std::string& name);
+/// In place of read_objects: those of a scene that was read before, each in the material that now has its
+/// material's name.
+void put_objects(SdlReader& reader, const Scene& read);
 /// film.imagepipeline. Without any step: LuxCore's default, autolinear and gamma 2.2.
 ToneMap read_tone_map(SdlReader& reader);
 

@@ -2,6 +2,9 @@
 #pragma once
 
 #include "tracer/scene/scene.h"
+#include "tracer/scene/vary_nodes.h"
+
+#include <vector>
 
 namespace ds {
 
@@ -11,13 +14,14 @@ struct EnvironmentChange {
   double gain = 1;      ///< factor on all its light, > 0
   /// Of a black body whose colour, of luminance 1, is a factor on all its light; in [1667, 25000], or 0: none.
   double temperature_k = 0;
+  std::vector<NodeValue> values{};  ///< in place of what its scene file has, before all else
 
   bool operator==(const EnvironmentChange&) const = default;
 };
 
 /// The environment turned, its meshes, lights and what its textures show in the world's coordinates
 /// alike, and brighter or darker: lights and what emits. The same bits on every machine; those of
-/// `scene` where nothing changes.
+/// `scene` where nothing changes. `change.values` are with_node_values' business.
 Scene changed(Scene scene, const EnvironmentChange& change);
 
 /// Whether a change of its light makes another program of it: of a texture that emits, a product.

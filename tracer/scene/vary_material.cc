@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/scene/vary_material.h"
 
+#include "tracer/base/name_pattern.h"
 #include "tracer/scene/type_tables.h"
 
 #include <cstddef>
 
 namespace ds {
 namespace {
-
-/// Whether a name fits a pattern in which * stands for any letters.
-bool fits(std::string_view name, std::string_view pattern) {
-  const std::size_t star = pattern.find('*');
-  if (star == pattern.npos) return name == pattern;
-  if (!name.starts_with(pattern.substr(0, star))) return false;
-  for (std::size_t from = star; from <= name.size(); ++from)
-    if (fits(name.substr(from), pattern.substr(star + 1))) return true;
-  return false;
-}
 
 /// Calls visit(type, node, index of the input or -1, index of the number or -1) for each property.
 template <typename Nodes, typename Visit>
@@ -26,7 +17,7 @@ void visit_nodes(Nodes& nodes, std::span<const NodeType> types, std::string_view
   if (dot == pattern.npos) return;
   const std::string_view property = pattern.substr(dot + 1);
   for (auto& node : nodes) {
-    if (!fits(node.name, pattern.substr(0, dot))) continue;
+    if (!fits_pattern(node.name, pattern.substr(0, dot))) continue;
     const NodeType& type = types[static_cast<std::size_t>(node.type)];
     const int input = find_input(type, property), number = find_number(type, property);
     if (input >= 0 || number >= 0) visit(type, node, input, number);

@@ -200,6 +200,7 @@ std::vector<Flip> Moving::flips() const {
       {"environments.turn_deg", "0", "30"},
       {"environments.gain", "1", "2"},
       {"environments.temperature_k", "false", "3000"},
+      {"environments.vary", "{}", "{\"sky.gain\"={uniform=[2,3]}}"},
       // Those that stand too near are drawn again, and the view with them.
       {"lights",
        "[{type=\"point\",position_m=[0,0,5]}]",
