@@ -52,7 +52,8 @@ void check_vary(const Recipe& recipe, Inputs& inputs) {
       const PropertyFit fit = fit_of(inputs.material(file), vary.pattern);
       any = any || fit.count > 0;
       if (fit.flag)
-        diagnostics.add(vary.value.place, "materials.vary {:?} names a switch of {}, which is not drawn",
+        diagnostics.add(vary.value.place,
+                        "materials.vary {:?} names a switch of {}, which is not drawn",
                         vary.pattern, file.filename().string());
       if (fit.count > 0 && !fit.colour &&
           recipe.drawn[vary.drawn].distribution.kind == DrawnKind::colour)
@@ -117,16 +118,39 @@ Hash128 program_share_of(const Scene& material) {
                                f.chooser_depth));
 }
 
+namespace {
+
+/// What a program depends on of an environment: no mesh and no pixel, which are large.
+Scene without_meshes(const Scene& environment) {
+  Scene scene;
+  scene.textures = environment.textures;
+  scene.materials = environment.materials;
+  scene.lights = environment.lights;
+  for (const Image& image : environment.images) {
+    Image& copy = scene.images.emplace_back();
+    copy.file = image.file;
+    copy.content = image.content;
+  }
+  for (const Object& object : environment.objects)
+    scene.objects.push_back({object.name,
+                             {},
+                             object.material,
+                             object.triangle_materials,
+                             object.id,
+                             object.camera_invisible});
+  return scene;
+}
+
+}  // namespace
+
 Scene scene_without_model(const Recipe& recipe, Inputs& inputs, const ImageSpec& image) {
   EnvironmentChange change = change_of(image, recipe, inputs);
   change.turn_deg = 0;
   const std::filesystem::path& folder = image.environment_folder;
-  Scene scene = changed(change.values.empty()
-                            ? inputs.environment(folder)
-                            : with_node_values(inputs.environment(folder),
-                                               inputs.environment_facts(folder).nodes, folder,
-                                               change.values),
-                        change);
+  Scene scene = without_meshes(inputs.environment(folder));
+  if (!change.values.empty())
+    scene = with_node_values(scene, inputs.environment_facts(folder).nodes, folder, change.values);
+  scene = changed(std::move(scene), change);
   scene.lights.insert(scene.lights.end(), image.lights->begin(), image.lights->end());
   for (const Distractor& one : *image.distractors) {
     Scene material = material_of(one, inputs);

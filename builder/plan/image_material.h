@@ -23,7 +23,8 @@ std::string canonical_vary(const ImageSpec& image, const Recipe& recipe);
 /// without a "?" of one, or gives a colour to a property of one number.
 void check_vary(const Recipe& recipe, Inputs& inputs);
 
-/// The image's scene with one triangle in the place of the model and of each distractor: all that its program depends on.
+/// The image's scene with one triangle in the place of the model and of each distractor, and none of its environment's:
+/// all that its program depends on.
 /// Throws where a file cannot be read.
 Scene scene_without_model(const Recipe& recipe, Inputs& inputs, const ImageSpec& image);
 

@@ -55,7 +55,8 @@ struct View {
   Camera camera;
   EnvironmentChange change;
   int width = 0, height = 0;
-  Hash128 part;
+  std::string text;              ///< canonical, of camera and change
+  std::optional<Hash128> part;   ///< of that text alone
   std::vector<TextForm> planes;  ///< of each wanted: its text, plane_form
 };
 
@@ -105,8 +106,8 @@ bool is_gained(const EnvironmentChange& change, const Environment& environment) 
 std::string kind_name(const ImageSpec& image, const Environment& environment, bool gained,
                       Hash128 material, const std::string& others, const std::string& lit) {
   return fmt::format("{} {} {}{}{}{}{}{}", material.hex(), environment.part.hex(),
-                     image.camera.lens_radius_m > 0 ? "lens" : "pinhole",
-                     gained ? " gained" : "", others.empty() ? "" : " with ", others, lit.empty() ? "" : " lit by ", lit);
+                     image.camera.lens_radius_m > 0 ? "lens" : "pinhole", gained ? " gained" : "",
+                     others.empty() ? "" : " with ", others, lit.empty() ? "" : " lit by ", lit);
 }
 
 /// What of the lights beside its environment's, and of that environment's values, an image's program depends on.
@@ -126,10 +127,25 @@ class KeyMaker::State {
 
   ImageKeys keys(const ImageSpec& image);
   Hash128 kept_key(const ImageSpec& image, const ImageKeys& keys);
-  void add_texts(const ImageSpec& image);
+  void add_texts(const ImageSpec& image, const ImageKeys& keys);
 
  private:
-  Hash128 model_part(const ImageSpec& image, MeshExtras reads);
+  /// A text that is an image's own, folded, and its hash.
+  struct OwnText {
+    Hash128 hash;
+    std::string text;
+  };
+  OwnText own(std::string_view canonical) {
+    std::string folded = texts_.fold(canonical);
+    const Hash128 hash = hash_text(folded);
+    return {hash, std::move(folded)};
+  }
+  /// The hash of a text that add_texts may be asked for.
+  Hash128 note(std::string_view canonical) { return own_.emplace_back(own(canonical)).hash; }
+  const OwnText& model_text(const ImageSpec& image, MeshExtras reads);
+  Hash128 model_part(const ImageSpec& image, MeshExtras reads) {
+    return model_text(image, reads).hash;
+  }
   Environment& environment_of(const ImageSpec& image);
   View& view_of(Environment& environment, const ImageSpec& image);
   Kind& kind_of(const ImageSpec& image, const Environment& environment);
@@ -137,14 +153,10 @@ class KeyMaker::State {
   const std::string& program(const ImageSpec& image);
   Hash128 program_hash(const ImageSpec& image, const std::string& kind);
   MaterialHashes material_of_image(const Kind& kind, const ImageSpec& image);
-  Hash128 view_part(const View& view, const ImageSpec& image);
+  Hash128 view_part(View& view, const ImageSpec& image);
   Hash128 traced_plane(std::size_t number, const PartHashes& parts, Hash128 colours,
                        const Environment& environment, View& view, Kind& kind,
                        const ImageSpec& image);
-  std::string text_of_view(const ImageSpec& image) {
-    return canonical_camera(image.camera) + canonical_change(changed(image)) +
-           canonical_lights(image.lights) + distractors_.of_picture(image);
-  }
   void add_outputs(ImageKeys& keys, Hash128 colours, Environment& environment, View& view,
                    Kind& kind, const ImageSpec& image);
 
@@ -155,12 +167,19 @@ class KeyMaker::State {
   std::vector<WantedPlane> planes_;      ///< as they stand in output_kinds_
   Shared<std::filesystem::path> model_;  ///< the last image's: a model's images follow each other
   NormaliseOptions options_;             ///< and how it is placed
-  std::array<std::optional<Hash128>, 8> model_parts_;  ///< by what of the model is read
+  std::array<std::optional<OwnText>, 8> model_parts_;  ///< by what of the model is read
   std::unordered_map<const void*, Environment> environments_;
   std::map<std::tuple<const void*, const void*, bool, bool, std::string, std::string>, Kind> kinds_;
   DistractorTexts distractors_;
   std::deque<std::pair<SceneEffects, std::string>> programs_;
   TextForm five_, film_sums_, files_;
+  // Of the image that keys() was asked for last:
+  PartHashes last_{};
+  Kind* kind_ = nullptr;
+  const View* view_ = nullptr;  ///< where it has no text of its own
+  std::vector<OwnText> own_;
+  bool colours_ = false;   ///< a wanted plane reads materials
+  bool reserved_ = false;  ///< there is place for the texts of all images
 };
 
 KeyMaker::State::State(const Recipe& recipe, Inputs& inputs, TextSet& texts)
@@ -180,22 +199,22 @@ KeyMaker::State::State(const Recipe& recipe, Inputs& inputs, TextSet& texts)
     names.push_back(kind.kind.data());  // names are literals
     if (kind.plane == nullptr) continue;
     planes_.push_back(wanted_plane(kind));
+    colours_ = colours_ || reads_materials(*kind.plane);
   }
   files_ = TextForm(files.text(), names);
 }
 
-Hash128 KeyMaker::State::model_part(const ImageSpec& image, MeshExtras reads) {
+const KeyMaker::State::OwnText& KeyMaker::State::model_text(const ImageSpec& image,
+                                                            MeshExtras reads) {
   const NormaliseOptions options = normalise_of(image, recipe_);
   if (!model_.is_same(image.model_file) || options != options_) {
     model_parts_ = {};
     model_ = image.model_file;
     options_ = options;
   }
-  std::optional<Hash128>& part =
+  std::optional<OwnText>& part =
       model_parts_[(reads.uvs ? 1U : 0U) + (reads.colors ? 2U : 0U) + (reads.normals ? 4U : 0U)];
-  if (!part)
-    part = hash_text(
-        texts_.fold(canonical_model(inputs_.model_hashes(image.model_file), reads, options)));
+  if (!part) part = own(canonical_model(inputs_.model_hashes(image.model_file), reads, options));
   return *part;
 }
 
@@ -226,20 +245,23 @@ View& KeyMaker::State::view_of(Environment& environment, const ImageSpec& image)
   view.change = std::move(change);
   view.width = engine.width;
   view.height = engine.height;
-  view.part = hash_text(texts_.fold(canonical_camera(image.camera) + canonical_change(view.change)));
+  view.text = canonical_camera(image.camera) + canonical_change(view.change);
+  view.part.reset();
   view.planes.clear();
   for (const WantedPlane& plane : planes_)
-    view.planes.push_back(is_of_light(*plane.type) ? TextForm()
-                                                   : plane_form(plane, environment.shapes, image,
-                                                                view.change));
+    view.planes.push_back(is_of_light(*plane.type)
+                              ? TextForm()
+                              : plane_form(plane, environment.shapes, image, view.change));
   return view;
 }
 
 /// What views of an image have in common, and what is its own.
-Hash128 KeyMaker::State::view_part(const View& view, const ImageSpec& image) {
-  return image.distractors->empty() && image.lights->empty()
-             ? view.part
-             : hash_text(texts_.fold(text_of_view(image)));
+Hash128 KeyMaker::State::view_part(View& view, const ImageSpec& image) {
+  if (!image.distractors->empty() || !image.lights->empty())
+    return note(view.text + canonical_lights(image.lights) + distractors_.of_picture(image));
+  if (!view.part) view.part = hash_text(texts_.fold(view.text));
+  view_ = &view;
+  return *view.part;
 }
 
 /// Of what a plane is made from, for an image; `parts`: of its picture.
@@ -346,8 +368,8 @@ Kind& KeyMaker::State::kind_of(const ImageSpec& image, const Environment& enviro
 MaterialHashes KeyMaker::State::material_of_image(const Kind& kind, const ImageSpec& image) {
   if (recipe_.vary.empty()) return {kind.material_part, kind.colours};
   const Scene material = material_of(image, recipe_, inputs_);
-  return {hash_text(texts_.fold(canonical_material(material))),
-          planes_.empty() ? Hash128{} : hash_text(canonical_colours(material))};
+  return {note(canonical_material(material)),
+          colours_ ? hash_text(canonical_colours(material)) : Hash128{}};
 }
 
 void KeyMaker::State::add_outputs(ImageKeys& keys, Hash128 colours, Environment& environment,
@@ -380,6 +402,8 @@ void KeyMaker::State::add_outputs(ImageKeys& keys, Hash128 colours, Environment&
 }
 
 ImageKeys KeyMaker::State::keys(const ImageSpec& image) {
+  own_.clear();
+  view_ = nullptr;
   Environment& environment = environment_of(image);
   View& view = view_of(environment, image);
   Kind& kind = kind_of(image, environment);
@@ -396,8 +420,10 @@ ImageKeys KeyMaker::State::keys(const ImageSpec& image) {
       five_.hash({HexText(parts[0]).text(), HexText(parts[1]).text(), HexText(parts[2]).text(),
                   HexText(parts[3]).text(), HexText(parts[4]).text()});
   if (const std::string effects = canonical_effects(effects_of(image)); !effects.empty())
-    keys.parts[5] = hash_text(texts_.fold(kind.files + effects));
+    keys.parts[5] = note(kind.files + effects);
   add_outputs(keys, material.colours, environment, view, kind, image);
+  last_ = keys.parts;
+  kind_ = &kind;
   return keys;
 }
 
@@ -414,14 +440,20 @@ Hash128 KeyMaker::State::kept_key(const ImageSpec& image, const ImageKeys& keys)
 
 /// The other texts were added when the first image of their kind was met, but for a program that was
 /// known by its hash.
-void KeyMaker::State::add_texts(const ImageSpec& image) {
-  Kind& kind = kind_of(image, environment_of(image));
-  texts_.add(canonical_model(inputs_.model_hashes(image.model_file), kind.reads,
-                             normalise_of(image, recipe_)));
-  texts_.add(text_of_view(image));
-  if (const std::string effects = canonical_effects(effects_of(image)); !effects.empty())
-    texts_.add(kind.files + effects);
-  if (!recipe_.vary.empty()) texts_.add(canonical_material(material_of(image, recipe_, inputs_)));
+void KeyMaker::State::add_texts(const ImageSpec& image, const ImageKeys& keys) {
+  if (kind_ == nullptr || last_ != keys.parts) this->keys(image);
+  Kind& kind = *kind_;
+  if (!reserved_ && !recipe_.drawn.empty()) {
+    constexpr std::size_t k_most_texts = 6;  // an image's own
+    texts_.reserve(k_most_texts * image_count(recipe_));
+    reserved_ = true;
+  }
+  const OwnText& model = model_text(image, kind.reads);
+  texts_.put(model.hash, model.text);
+  if (view_ != nullptr) texts_.add(view_->text);
+  for (OwnText& one : own_)
+    texts_.put(one.hash, std::move(one.text));
+  kind_ = nullptr;  // these texts are gone
   texts_.add(kind.engine.fill({view_of_digits(fmt::format_int(image.engine.seed))}));
   if (texts_.find(kind.program) != nullptr) return;
   CanonicalText text;
@@ -442,8 +474,8 @@ Hash128 KeyMaker::kept_key(const ImageSpec& image, const ImageKeys& keys) {
   return state_->kept_key(image, keys);
 }
 
-void KeyMaker::add_texts(const ImageSpec& image) {
-  state_->add_texts(image);
+void KeyMaker::add_texts(const ImageSpec& image, const ImageKeys& keys) {
+  state_->add_texts(image, keys);
 }
 
 }  // namespace ds

@@ -52,8 +52,9 @@ class KeyMaker {
   ImageKeys keys(const ImageSpec& image);
   /// ImageKeys::kept: a hash of the whole program's text, so only for images that need it.
   Hash128 kept_key(const ImageSpec& image, const ImageKeys& keys);
-  /// Puts the texts that `keys` are hashes of into the set, for `explain`.
-  void add_texts(const ImageSpec& image);
+  /// Puts the texts that the image's keys are hashes of into the set, for `explain`. Those of the image that
+  /// keys() was asked for last are there already.
+  void add_texts(const ImageSpec& image, const ImageKeys& keys);
 
  private:
   class State;

@@ -178,7 +178,7 @@ void Planner::plan(PlannedImage& image, const PartHashes* known) {
   const bool changed = known != nullptr && *known != image.keys.parts;
   const bool as_known = known != nullptr && !changed;
   if (as_known && !force_ && all_there(image)) return;
-  keys_.add_texts(image.spec);
+  keys_.add_texts(image.spec, image.keys);
   if (force_) image.reasons.emplace_back("forced");
   if (known == nullptr) image.reasons.emplace_back("new");
   if (changed) add_changes(image, *known);

@@ -29,6 +29,12 @@ void for_each_line(std::string_view text, const Visit& visit) {
   }
 }
 
+bool has_long_line(std::string_view text, std::size_t most) {
+  bool found = false;
+  for_each_line(text, [&](std::string_view line) { found = found || line.size() > most; });
+  return found;
+}
+
 /// Position of the value in a line, or npos.
 std::size_t value_start(std::string_view line) {
   const std::size_t separator = line.find(" = ");
@@ -79,6 +85,7 @@ std::vector<std::string> unescaped_lines(std::string_view value) {
 }  // namespace
 
 std::string TextSet::fold(std::string_view canonical) {
+  if (!has_long_line(canonical, k_longest_value)) return std::string(canonical);
   std::string folded;
   for_each_line(canonical, [&](std::string_view line) {
     const std::size_t start = value_start(line);

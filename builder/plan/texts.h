@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace ds {
@@ -27,6 +28,10 @@ class TextSet {
   std::string fold(std::string_view canonical);
   /// Keeps the folded text too. The hash is of it and depends on every byte of `canonical`.
   Hash128 add(std::string_view canonical);
+  /// So many texts will be kept.
+  void reserve(std::size_t count) { texts_.reserve(count); }
+  /// Keeps a folded text whose hash is known.
+  void put(Hash128 hash, std::string folded) { texts_.try_emplace(hash, std::move(folded)); }
   /// The folded text.
   const std::string* find(Hash128 hash) const;
   /// How many texts are kept, the long values among them.

@@ -95,6 +95,7 @@ std::vector<Drawn> drawn_of(const Settings& settings) {
 void draw_all(const std::vector<Drawn>& drawn, const DrawnFor& of, Variables& variables,
               DrawnValues& values) {
   values.clear();
+  values.reserve(drawn.size());
   // What several images share stays when the view of one is drawn again.
   DrawnFor shared = of;
   shared.attempt = 0;

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 
 namespace ds {
 namespace {
@@ -22,39 +23,51 @@ void append_escaped(std::string& text, std::string_view value) {
   }
 }
 
+constexpr std::size_t k_most_hex = 32;  // "-0x1.fffffffffffffp-1022" and more
+
+/// How many characters hex_float's text has. By hand: a plan writes dozens for each of thousands of images, and printf
+/// takes five times as long.
+std::size_t write_hex(double value, char* text) {
+  const auto write = [&](std::string_view word) {
+    return static_cast<std::size_t>(std::copy(word.begin(), word.end(), text) - text);
+  };
+  if (std::isnan(value)) return write("nan");
+  if (std::isinf(value)) return write(value < 0 ? "-inf" : "inf");
+  constexpr int k_least_exponent = -1022;  // of IEEE 754 doubles
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  std::uint64_t fraction = bits & ((std::uint64_t{1} << 52U) - 1);
+  int exponent = static_cast<int>((bits >> 52U) & 0x7ffU) - 1023;
+  const bool is_normal = exponent >= k_least_exponent;
+  if (!is_normal) exponent = fraction == 0 ? 0 : k_least_exponent;
+  std::size_t at = write(std::signbit(value) ? "-0x" : "0x");
+  text[at++] = is_normal ? '1' : '0';
+  if (fraction != 0) text[at++] = '.';
+  for (; fraction != 0; fraction = (fraction << 4U) & ((std::uint64_t{1} << 52U) - 1))
+    text[at++] = "0123456789abcdef"[fraction >> 48U];
+  text[at++] = 'p';
+  text[at++] = exponent < 0 ? '-' : '+';
+  const fmt::format_int power(std::abs(exponent));
+  std::copy_n(power.data(), power.size(), text + at);
+  return at + power.size();
+}
+
 template <typename T>
 std::string hex_floats(std::span<const T> values) {
   std::string text;
+  text.reserve(values.size() * k_most_hex);
   for (const T value : values) {
+    char digits[k_most_hex];
     if (!text.empty()) text += ' ';
-    text += hex_float(value);
+    text.append(digits, write_hex(static_cast<double>(value), digits));
   }
   return text;
 }
 
 }  // namespace
 
-// By hand: a plan writes dozens for each of thousands of images, and printf takes five times as long.
 std::string hex_float(double value) {
-  if (std::isnan(value)) return "nan";
-  if (std::isinf(value)) return value < 0 ? "-inf" : "inf";
-  constexpr int k_digits = 13, k_least_exponent = -1022;  // of IEEE 754 doubles
-  const auto bits = std::bit_cast<std::uint64_t>(value);
-  std::uint64_t fraction = bits & ((std::uint64_t{1} << 52U) - 1);
-  int exponent = static_cast<int>((bits >> 52U) & 0x7ffU) - 1023;
-  const bool is_normal = exponent >= k_least_exponent;
-  if (!is_normal) exponent = fraction == 0 ? 0 : k_least_exponent;
-  std::string text = std::signbit(value) ? "-0x" : "0x";
-  text += is_normal ? '1' : '0';
-  if (fraction != 0) text += '.';
-  for (int digit = 0; digit < k_digits && fraction != 0; ++digit) {
-    text += "0123456789abcdef"[fraction >> 48U];
-    fraction = (fraction << 4U) & ((std::uint64_t{1} << 52U) - 1);
-  }
-  const fmt::format_int power(exponent);
-  text += exponent < 0 ? "p" : "p+";
-  text.append(power.data(), power.size());
-  return text;
+  char digits[k_most_hex];
+  return {digits, write_hex(value, digits)};
 }
 
 std::string hex_float(float value) {

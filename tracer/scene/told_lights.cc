@@ -32,13 +32,18 @@ const std::vector<const SdlTypeRow*>& told_light_types() {
 }
 
 Light make_told_light(const ToldLight& told) {
-  const std::string prefix = "scene.lights." + told.name;
-  std::string text = fmt::format("{}.type = {}\n", prefix, told.type);
-  for (const auto& [property, numbers] : told.values)
-    text += fmt::format("{}.{} = {}\n", prefix, property, fmt::join(numbers, " "));
+  const std::string prefix = "scene.lights." + told.name + ".";
+  PropertySet properties;
+  properties.put(prefix + "type", {told.type});
+  for (const auto& [property, numbers] : told.values) {
+    std::vector<std::string> words;
+    for (const double number : numbers)
+      words.push_back(fmt::format("{}", number));
+    properties.put(prefix + property, std::move(words));
+  }
   Diagnostics diagnostics(ErrorKind::asset);
-  SdlReader reader(PropertySet::parse(text, told.name, diagnostics), {}, diagnostics);
-  read_lights(reader);
+  SdlReader reader(std::move(properties), {}, diagnostics);
+  read_light(reader, told.name);
   if (!diagnostics.empty()) {
     std::vector<std::string> lines;
     for (const std::string& line : diagnostics.lines())

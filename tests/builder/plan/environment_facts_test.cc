@@ -123,8 +123,7 @@ TEST_F(EnvironmentFactsTest, AProgramThatIsKnownByItsHashIsStillRecorded) {
   TextSet texts;
   KeyMaker keys(dataset.recipe, inputs, texts);
   for (const ImageSpec& image : expand(dataset.recipe)) {
-    keys.keys(image);
-    keys.add_texts(image);
+    keys.add_texts(image, keys.keys(image));
     texts.visit(keys.keys(image).parts[4], [&](Hash128 hash, const std::string& text) {
       EXPECT_EQ(dataset.database->find_text(hash), text);
     });

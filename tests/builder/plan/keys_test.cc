@@ -219,7 +219,7 @@ TEST_F(KeysTest, WhatIsSharedGivesTheKeysOfWholeTexts) {
     EXPECT_EQ(render_key(made.parts), made.render);
     EXPECT_EQ(maker.kept_key(image, made), wanted.kept);
     different.insert(made.render);
-    maker.add_texts(image);
+    maker.add_texts(image, made);
     for (const Hash128 part : made.parts)
       EXPECT_NE(texts.find(part), nullptr);
   }
