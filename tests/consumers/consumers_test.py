@@ -53,7 +53,7 @@ class ConsumersTest(TinyCase):
 
     def test_formats_for_other_readers_are_no_image_folders(self):
         """Of folders' names the library would make labels that are none (of coco's: train and test)."""
-        for name in ("bop", "coco", "nerf", "yolo", "yolo_seg"):
+        for name in ("coco", "nerf", "yolo", "yolo_seg"):
             with self.subTest(format=name):
                 self.to = self.folder / name
                 self.export(name)
