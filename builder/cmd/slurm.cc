@@ -122,6 +122,21 @@ class OwnMark {
   SlurmMark mark_;
 };
 
+nlohmann::json to_json(const SlurmJob& job) {
+  return {{"shards", job.shards},
+          {"logs", job.logs.string()},
+          {"folder", job.folder.string()},
+          {"store", job.store.string()}};
+}
+
+/// --print: nothing is submitted.
+void print_script(const SlurmJob& job, bool json) {
+  if (!json) return write_text(Stream::result, slurm_script(job));
+  nlohmann::json object = to_json(job);
+  object["script_text"] = slurm_script(job);
+  print_json(object);
+}
+
 /// Plans once, so that no shard reads every model anew: the database is left in the store.
 PlanCounts plan_once(Dataset& dataset, const fs::path& folder, Disk& disk) {
   Inputs inputs(*dataset.database, Stamps::trust);
@@ -152,7 +167,7 @@ int run_slurm(const Arguments& arguments) {
   RealDisk disk;
   if (arguments.print) {
     const Dataset dataset = open_dataset(arguments.request(), Access::look, disk);
-    write_text(Stream::result, slurm_script(job_of(arguments, dataset)));
+    print_script(job_of(arguments, dataset), arguments.json);
     return 0;
   }
   if (!find_program("sbatch"))
@@ -173,12 +188,8 @@ int run_slurm(const Arguments& arguments) {
   mark.submitted(jobs);
   if (arguments.json) {
     nlohmann::json object = to_json(counts);
-    object.update({{"jobs", jobs},
-                   {"shards", job.shards},
-                   {"script", script.string()},
-                   {"logs", job.logs.string()},
-                   {"folder", job.folder.string()},
-                   {"store", job.store.string()}});
+    object.update(to_json(job));
+    object.update({{"jobs", jobs}, {"script", script.string()}});
     print_json(object);
     return 0;
   }

@@ -53,7 +53,8 @@ class SlurmScriptTest(TinyCase):
         self.store = self.folder / "it's a store"
 
     def slurm(self, *arguments, recipe=None, code=0, environment=None):
-        run = self.run_it("slurm", recipe or self.recipe, "-o", self.out, "--store", self.store, "--json", *arguments,
+        form = [] if "--print" in arguments else ["--json"]
+        run = self.run_it("slurm", recipe or self.recipe, "-o", self.out, "--store", self.store, *form, *arguments,
                           env=environment or self.environment)
         self.assertEqual(run.code, code, run)
         return run
@@ -335,6 +336,11 @@ class SlurmScriptTest(TinyCase):
         self.assertEqual(run.err, "dsbuild: error: slurm: no sbatch on PATH, so no Slurm; --print writes the script\n")
         self.assertFalse(self.store.exists() or self.out.exists())
         self.assertEqual(self.slurm("--print", environment=nowhere).err, "")
+        # Who asks for JSON gets that.
+        script = self.slurm("--print", "--shards", "3", environment=nowhere).out
+        told = self.slurm("--print", "--shards", "3", "--json", environment=nowhere).json
+        self.assertEqual((told["script_text"], told["shards"]), (script, 3))
+        self.assertEqual({"logs", "folder", "store"} - told.keys(), set())
         for arguments in (["--nodes", "0"], ["--shards", "x"], ["--shards", "70000"]):
             self.assertIn(f"slurm {arguments[0]}: wanted a whole number", self.slurm(*arguments, code=2).err)
         # What would take away what it gives sbatch itself, however it is spelt.

@@ -47,7 +47,8 @@ class SlurmTest(TinyCase):
         return []
 
     def submit(self, *arguments, code=0, settings=SLOW):
-        run = self.run_it("slurm", self.recipe, "-o", self.out, "--store", self.store, "--json", *settings, *self.options(),
+        form = [] if "--print" in arguments else ["--json"]
+        run = self.run_it("slurm", self.recipe, "-o", self.out, "--store", self.store, *form, *settings, *self.options(),
                           *arguments, env=self.cluster.environment)
         self.assertEqual(run.code, code, run)
         return run
