@@ -172,9 +172,10 @@ void add_option(CLI::App& verb, Option option, CommandLine& line) {
       verb.add_option("--older", to.older,
                       "gc: only what was written longer ago than this (30d, 12h)")
           ->type_name("TIME");
-      verb.add_option(
-              "--size", to.size,
-              "gc: the oldest first, and only until the store takes no more than this (20G)")
+      verb.add_option("--size", to.size,
+                      "gc: the oldest first, and only until the store, with its database, takes no "
+                      "more than "
+                      "this (20G)")
           ->type_name("BYTES");
       verb.add_flag("--forget", to.forget,
                     "gc: also what datasets name whose folder is gone; they are forgotten");

@@ -134,8 +134,39 @@ void warn_of_strange(const Store& store, const StoreUse& use) {
         use.strangers.size() > 1 ? fmt::format(", and {} more", use.strangers.size() - 1) : ""));
 }
 
+/// Who may put files into the store now.
+std::vector<RunningBuild> running_in(const OpenStore& open) {
+  std::vector<RunningBuild> running = running_builds(*open.store, *open.database);
+  const std::optional<SlurmMark> mark = find_slurm_mark(*open.store);
+  std::error_code gone;
+  // It is written again once the first jobs may have begun.
+  if (mark)
+    running.push_back(
+        {to_text(*mark), fs::last_write_time(mark->file, gone) - std::chrono::minutes(1)});
+  return running;
+}
+
+nlohmann::json names_of(const std::vector<RunningBuild>& running) {
+  nlohmann::json names = nlohmann::json::array();
+  for (const RunningBuild& build : running)
+    names.push_back(build.who);
+  return names;
+}
+
+std::string megabytes(std::uint64_t bytes) {
+  return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6);
+}
+
 std::string amount_text(const Amount& amount) {
-  return fmt::format("{} files, {:.1f} MB", amount.files, static_cast<double>(amount.bytes) / 1e6);
+  return fmt::format("{} files, {}", amount.files, megabytes(amount.bytes));
+}
+
+void say_running(const std::vector<RunningBuild>& running, const Amount& being_made) {
+  for (const RunningBuild& build : running)
+    say(Stream::result, "  at work: {}\n", build.who);
+  if (!running.empty())
+    say(Stream::result, "  written since, and named by no dataset yet: {}\n",
+        amount_text(being_made));
 }
 
 /// "20G", "500M", "1000": powers of 1,000.
@@ -156,13 +187,14 @@ std::uint64_t parse_bytes(const std::string& text) {
 int run_stats(const Arguments& arguments, Disk& disk) {
   const OpenStore open = open_store(arguments, Opening::look, disk);
   const std::vector<Parts> all_parts = find_parts(*open.store);
+  const std::vector<RunningBuild> running = running_in(open);
   const StoreUse use =
-      look_at_store(*open.store, *open.database, arguments.forget, stop_on_signal());
+      look_at_store(*open.store, *open.database, arguments.forget, running, stop_on_signal());
   warn_of_strange(*open.store, use);
-  Amount objects, records, unnamed;
+  Amount objects, records, unnamed, being_made = use.temporaries_now;
   for (const StoreFileUse& file : use.files) {
     (file.kind == Store::Kind::object ? objects : records).add(file.bytes);
-    if (!file.is_named) unnamed.add(file.bytes);
+    if (!file.is_named) (file.is_being_made ? being_made : unnamed).add(file.bytes);
   }
   nlohmann::json datasets = nlohmann::json::array(), kinds = nlohmann::json::object();
   for (const DatasetUse& dataset : use.datasets)
@@ -186,6 +218,9 @@ int run_stats(const Arguments& arguments, Disk& disk) {
                 {"records", to_json(records)},
                 {"named", kinds},
                 {"unnamed", to_json(unnamed)},
+                {"running", names_of(running)},
+                {"being_made", to_json(being_made)},
+                {"database", {{"bytes", use.database_bytes}, {"free", use.database_free}}},
                 {"missing", use.missing},
                 {"faults", use.faults.size()},
                 {"unreadable_records", use.unreadable},
@@ -216,8 +251,12 @@ int run_stats(const Arguments& arguments, Disk& disk) {
   say(Stream::result, "  {}: {}\n",
       use.unknown.empty() ? "no dataset names" : "no dataset that is known names",
       amount_text(unnamed));
-  say(Stream::result, "  all objects: {}; records: {}\n", amount_text(objects),
-      amount_text(records));
+  say_running(running, being_made);
+  say(Stream::result, "  all objects: {}; records: {}; database: {}{}\n", amount_text(objects),
+      amount_text(records), megabytes(use.database_bytes),
+      use.database_free > 0
+          ? fmt::format(", of which {} hold nothing", megabytes(use.database_free))
+          : "");
   if (use.missing > 0)
     say(Stream::result,
         "  {} objects that datasets name are missing (store verify puts back what their folders "
@@ -248,31 +287,49 @@ int run_gc(const Arguments& arguments, Disk& disk) {
   else
     guest.emplace(Guest::collect(*open.store));
   check_no_parts(*open.store);
+  // Beside gc itself nobody is.
+  const std::vector<RunningBuild> running =
+      arguments.dry_run ? running_in(open) : std::vector<RunningBuild>{};
   const StoreUse use =
-      look_at_store(*open.store, *open.database, arguments.forget, stop_on_signal());
+      look_at_store(*open.store, *open.database, arguments.forget, running, stop_on_signal());
   check_all_known(*open.store, use);
   warn_of_strange(*open.store, use);
   const CollectResult result = collect(*open.store, *open.database, request, use);
+  if (!result.not_shrunk.empty())
+    warn(fmt::format("the database stays as large as it is: {}", result.not_shrunk));
   if (arguments.json) {
     print_json({{"objects", to_json(result.objects)},
                 {"records", to_json(result.records)},
                 {"temporaries", to_json(result.temporaries)},
                 {"kept", to_json(result.kept)},
                 {"unnamed", to_json(result.unnamed)},
+                {"running", names_of(running)},
+                {"being_made", to_json(result.being_made)},
                 {"forgotten", result.forgotten},
                 {"products", result.products},
+                {"texts", result.texts},
+                {"lines", result.lines},
+                {"database", result.database_bytes},
+                {"database_left",
+                 result.database_left ? nlohmann::json(*result.database_left) : nlohmann::json()},
                 {"faults", use.faults.size()},
                 {"unreadable_records", use.unreadable},
                 {"strangers", use.strangers.size()},
                 {"dry_run", arguments.dry_run}});
     return 0;
   }
-  say(Stream::report, "{} objects ({}), {} records{}; {} left\n",
+  const std::uint64_t database = result.database_left.value_or(result.database_bytes);
+  say(Stream::report, "{} objects ({}), {} records{}{}; {} left, and a database of {}\n",
       arguments.dry_run ? "would remove" : "removed", amount_text(result.objects),
       result.records.files,
+      result.lines > 0 ? fmt::format(", {} lines of others", result.lines) : "",
       result.forgotten > 0 ? fmt::format(", {} datasets forgotten", result.forgotten) : "",
-      amount_text(result.kept));
-  if (request.most_bytes && result.kept.bytes > *request.most_bytes)
+      amount_text(result.kept), megabytes(database));
+  if (!running.empty())
+    say(Stream::report,
+        "of what is left, {} are named by no dataset and were written since {} began\n",
+        amount_text(result.being_made), running.front().who);
+  if (request.most_bytes && result.kept.bytes + database > *request.most_bytes)
     warn(fmt::format(
         "{}: takes more than --size {}: the rest is what datasets name, or not old enough",
         open.store->folder().string(), arguments.size));
@@ -350,7 +407,7 @@ int run_store_verify(const Arguments& arguments, Disk& disk) {
   const bool mends = !arguments.dry_run && !is_read_only(open.store->folder());
   const std::uint64_t restored = mends ? restore_objects(*open.store, *open.database, stop) : 0;
   const std::uint64_t missing =
-      look_at_store(*open.store, *open.database, arguments.forget, stop).missing;
+      look_at_store(*open.store, *open.database, arguments.forget, {}, stop).missing;
   if (arguments.json)
     print_json({{"files", all.size()},
                 {"damaged", damaged},

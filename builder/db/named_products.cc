@@ -3,6 +3,9 @@
 
 #include "builder/db/hash_column.h"
 
+#include <filesystem>
+#include <system_error>
+
 namespace ds {
 
 std::vector<DatasetRow> all_datasets(Database& database) {
@@ -49,6 +52,22 @@ void visit_products(
     visit(hash_column(row, 0), row.view(1), hash_column(row, 2));
 }
 
+void visit_running_builds(
+    Database& database, const std::function<void(const std::string& dataset, const BuildRow& build,
+                                                 std::int64_t unix_seconds)>& visit) {
+  Statement row = database.connection().prepare(
+      "SELECT dataset.name, build.host, build.process, build.outcome, "
+      "CAST(strftime('%s', build.started_at) AS INTEGER) "
+      "FROM build JOIN dataset ON dataset.id = build.dataset WHERE build.outcome = 'running'");
+  while (row.step()) {
+    BuildRow build;
+    build.host = row.text(1);
+    build.process = row.integer(2);
+    build.outcome = row.text(3);
+    visit(row.text(0), build, row.integer(4));
+  }
+}
+
 void remove_product(Database& database, Hash128 key) {
   database.connection().prepare("DELETE FROM product WHERE key = ?1").bind(1, key.hex()).run();
 }
@@ -58,6 +77,28 @@ void remove_dataset(Database& database, const std::string& id) {
        {"DELETE FROM image WHERE dataset = ?1", "DELETE FROM placed WHERE dataset = ?1",
         "DELETE FROM build WHERE dataset = ?1", "DELETE FROM dataset WHERE id = ?1"})
     database.connection().prepare(sql).bind(1, id).run();
+}
+
+DatabaseSize size_of(Database& database) {
+  const auto number = [&](const char* pragma) {
+    Statement row = database.connection().prepare(pragma);
+    row.step();
+    return row.count(0);
+  };
+  const std::uint64_t page = number("PRAGMA page_size");
+  DatabaseSize size{page * number("PRAGMA page_count"), page * number("PRAGMA freelist_count")};
+  Statement files =
+      database.connection().prepare("SELECT file FROM pragma_database_list WHERE name = 'main'");
+  files.step();
+  std::error_code no_log;
+  const auto log = std::filesystem::file_size(files.text(0) + "-wal", no_log);
+  if (!no_log) size.bytes += log;
+  return size;
+}
+
+void shrink(Database& database) {
+  database.connection().execute("VACUUM");
+  database.connection().execute("PRAGMA wal_checkpoint(TRUNCATE)");
 }
 
 }  // namespace ds

@@ -64,11 +64,11 @@ struct Other {
 
 enum class Gone { remove, leave };
 
-/// Another guest than `own`, which may be empty. Files of those that are gone: as `gone` says.
-std::optional<Other> find_other(const fs::path& guests, const fs::path& own, bool that_collects,
-                                Gone gone) {
+/// Guests but `own`, which may be empty. Files of those that are gone: as `gone` says.
+std::vector<Other> find_others(const fs::path& guests, const fs::path& own, bool that_collect,
+                               Gone gone) {
   std::error_code error;
-  std::optional<Other> found;
+  std::vector<Other> found;
   for (fs::directory_iterator entry(guests, error), end; !error && entry != end;
        entry.increment(error)) {
     const std::optional<Name> name = name_of(entry->path());
@@ -78,12 +78,19 @@ std::optional<Other> find_other(const fs::path& guests, const fs::path& own, boo
       continue;
     }
     const std::optional<std::string> text = text_of(entry->path());
-    if (text && (*text == k_collects) == that_collects)
-      found = {entry->path(), *text, fmt::format("process {} on {}", name->process, name->host)};
+    if (text && (*text == k_collects) == that_collect)
+      found.push_back(
+          {entry->path(), *text, fmt::format("process {} on {}", name->process, name->host)});
   }
   if (error && error != std::errc::no_such_file_or_directory)
     fail_system(guests, "list", error.value());
   return found;
+}
+
+std::optional<Other> find_other(const fs::path& guests, const fs::path& own, bool that_collects,
+                                Gone gone) {
+  const std::vector<Other> all = find_others(guests, own, that_collects, gone);
+  return all.empty() ? std::nullopt : std::optional(all.back());
 }
 
 void refuse_beside(const Store& store, const std::optional<Other>& other) {
@@ -144,6 +151,16 @@ Guest Guest::collect(const Store& store) {
 
 void Guest::check_collect(const Store& store) {
   refuse_beside(store, find_other(guests_of(store), {}, false, Gone::leave));
+}
+
+std::vector<Guest::Builder> Guest::builders(const Store& store) {
+  std::vector<Builder> found;
+  for (const Other& other : find_others(guests_of(store), {}, false, Gone::leave)) {
+    std::error_code gone;
+    const auto since = fs::last_write_time(other.file, gone);
+    if (!gone) found.push_back({other.who, other.text, since});
+  }
+  return found;
 }
 
 }  // namespace ds

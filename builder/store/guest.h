@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace ds {
 
@@ -30,6 +31,13 @@ class Guest {
   static Guest collect(const Store& store);
   /// Throws as `collect` would now, and leaves all as it is.
   static void check_collect(const Store& store);
+  /// A guest that builds now, or did when it was killed on another machine.
+  struct Builder {
+    std::string who, what;                  ///< "process 17 on host", "build /home/me/recipe.toml"
+    std::filesystem::file_time_type since;  ///< when it came
+  };
+  /// Leaves all as it is.
+  static std::vector<Builder> builders(const Store& store);
   ~Guest();
   Guest(Guest&& other) noexcept;
   Guest& operator=(Guest&&) = delete;

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <sstream>
 
 namespace ds {
@@ -43,6 +44,43 @@ MadeProduct from_line(const std::string& line) {
   made.run.seconds = object.at("seconds").get<double>();
   made.run.device = object.at("device").get<std::string>();
   return made;
+}
+
+/// Goes behind the next `,"NAME":`, and what it is written before. A quote inside a text has a backslash before it,
+/// so this stands between members only.
+bool find_member(std::string_view& rest, std::string_view name) {
+  const std::size_t at = rest.find(name);
+  if (at == rest.npos) return false;
+  rest.remove_prefix(at + name.size());
+  return true;
+}
+
+std::optional<Hash128> hash_ahead(std::string_view rest) {
+  constexpr std::size_t k_digits = 32;
+  if (rest.size() <= k_digits || rest[k_digits] != '"') return std::nullopt;
+  return Hash128::from_hex(rest.substr(0, k_digits));
+}
+
+/// Of a line without its break. Nothing for one that `to_record` did not write.
+std::optional<RecordLine> glance_at_line(std::string_view line) {
+  std::string_view rest = line;
+  if (!rest.starts_with(R"({"device":")") || !rest.ends_with('}')) return std::nullopt;
+  RecordLine found;
+  if (!find_member(rest, R"(,"key":")")) return std::nullopt;
+  const std::optional<Hash128> key = hash_ahead(rest);
+  if (!find_member(rest, R"(,"kind":")")) return std::nullopt;
+  found.kind = rest.substr(0, rest.find('"'));
+  if (!find_member(rest, R"(,"object":")")) return std::nullopt;
+  const std::optional<Hash128> object = hash_ahead(rest);
+  if (!find_member(rest, R"(,"pixels":")") || !hash_ahead(rest)) return std::nullopt;
+  for (const std::string_view name :
+       {R"(,"rejected_samples":)", R"(,"relative_error":)", R"(,"seconds":)", R"(,"sha256":")",
+        R"(,"size_bytes":)", R"(,"tone_map_scale":)"})
+    if (!find_member(rest, name)) return std::nullopt;
+  if (!key || !object || found.kind.find('\\') != found.kind.npos) return std::nullopt;
+  found.key = *key;
+  found.object = *object;
+  return found;
 }
 
 }  // namespace
@@ -84,6 +122,24 @@ std::vector<MadeProduct> from_record(const std::string& text) {
         fmt::format("a record of the store cannot be read: {}", json_fault(error)));
   }
   return made;
+}
+
+std::vector<RecordLine> record_lines(std::string_view text) {
+  std::vector<RecordLine> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    std::optional<RecordLine> found = glance_at_line(line);
+    if (!found) {
+      // One that is none throws; of another way of writing it, only the order of members is another.
+      const Product product = from_record(std::string(line) + '\n').at(0).product;
+      found = {{}, product.key, product.object, product.kind};
+    }
+    found->text = text.substr(0, std::min(end + 1, text.size()));
+    lines.push_back(*found);
+    text.remove_prefix(found->text.size());
+  }
+  return lines;
 }
 
 }  // namespace ds

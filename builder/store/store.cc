@@ -4,10 +4,14 @@
 #include "tracer/base/disk_error.h"
 #include "tracer/base/files.h"
 #include "tracer/base/log.h"
+#include "tracer/base/parallel.h"
 #include "tracer/base/regular_file.h"
 
 #include <algorithm>
+#include <chrono>
+#include <ctime>
 #include <set>
+#include <sys/stat.h>
 #include <system_error>
 
 namespace ds {
@@ -35,12 +39,13 @@ struct Content {
 Content read_content(const fs::path& file, Hash128 hash) {
   std::error_code error;
   if (!fs::exists(file, error)) return {};
-  if (const auto what = what_is_no_file(file)) return {{}, "wanted a file, found " + *what, false};
   try {
     std::string text = read_text_file(file);
     if (hash_text(text) != hash) return {{}, "a file of the store is damaged"};
     return {std::move(text), ""};
   } catch (const Error&) {
+    if (const auto what = what_is_no_file(file))
+      return {{}, "wanted a file, found " + *what, false};
     if (!fs::exists(file, error)) return {};
     throw;
   }
@@ -61,6 +66,12 @@ bool is_prefix(const std::string& name) {
   return name.size() == 2 && Hash128::from_hex(name + std::string(30, '0'));
 }
 
+fs::file_time_type file_time(const timespec& time) {
+  const std::chrono::sys_time<std::chrono::nanoseconds> since_1970(
+      std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec));
+  return std::chrono::file_clock::from_sys(since_1970);
+}
+
 /// Of what stands in a folder of a prefix, or in such a folder's place; nothing of what has gone
 /// meanwhile, and of folders that are not the store's.
 std::optional<Store::StoredFile> stored_file(const fs::directory_entry& entry, bool in_folder) {
@@ -68,12 +79,12 @@ std::optional<Store::StoredFile> stored_file(const fs::directory_entry& entry, b
   const std::string name = path.filename().string();
   Store::StoredFile found{.path = path, .hash = {}, .written = {}};
   if (in_folder) found.hash = Hash128::from_hex(path.parent_path().filename().string() + name);
-  std::error_code vanished;
-  if (entry.is_regular_file(vanished)) {
+  struct stat info {};  // one call, where the library makes one for each question
+  if (::stat(path.c_str(), &info) != 0) return std::nullopt;
+  if (S_ISREG(info.st_mode)) {
     found.is_temporary = process_of_temporary(name).has_value();
-    found.bytes = entry.file_size(vanished);
-    if (!vanished) found.written = entry.last_write_time(vanished);
-    if (vanished) return std::nullopt;
+    found.bytes = static_cast<std::uint64_t>(info.st_size);
+    found.written = file_time(info.st_mtim);
     if (!in_folder && is_prefix(name)) found.fault = "wanted a folder, found a file";
   } else if (found.hash || (!in_folder && is_prefix(name))) {
     if (const auto what = what_is_no_file(path))
@@ -83,6 +94,21 @@ std::optional<Store::StoredFile> stored_file(const fs::directory_entry& entry, b
     return std::nullopt;
   }
   return found;
+}
+
+/// Of a folder of a prefix, or of what stands in its place.
+std::vector<Store::StoredFile> files_in(const fs::directory_entry& folder) {
+  std::vector<Store::StoredFile> files;
+  const auto add = [&](std::optional<Store::StoredFile> file) {
+    if (file) files.push_back(*std::move(file));
+  };
+  std::error_code vanished;
+  if (!folder.is_directory(vanished))
+    add(stored_file(folder, false));
+  else
+    visit_entries(folder.path(),
+                  [&](const fs::directory_entry& entry) { add(stored_file(entry, true)); });
+  return files;
 }
 
 }  // namespace
@@ -195,15 +221,22 @@ bool Store::is_object(const fs::path& file, Hash128 object) const {
 void Store::visit_files(Kind kind, const std::function<void(const StoredFile&)>& visit) const {
   for (const fs::path& store : {local_, folder_}) {
     if (store.empty()) continue;
-    visit_entries(store / folder_of(kind), [&](const fs::directory_entry& folder) {
-      std::error_code vanished;
-      const auto visit_one = [&](const std::optional<StoredFile>& file) {
-        if (file) visit(*file);
-      };
-      if (!folder.is_directory(vanished)) return visit_one(stored_file(folder, false));
-      visit_entries(folder.path(),
-                    [&](const fs::directory_entry& entry) { visit_one(stored_file(entry, true)); });
-    });
+    std::vector<fs::directory_entry> folders;
+    visit_entries(store / folder_of(kind),
+                  [&](const fs::directory_entry& folder) { folders.push_back(folder); });
+    std::vector<std::vector<StoredFile>> found(folders.size());
+    // Some at a time, so that what is found does not lie in memory all at once.
+    constexpr std::size_t k_together = 16;
+    for (std::size_t done = 0; done < folders.size(); done += k_together) {
+      const std::size_t count = std::min(k_together, folders.size() - done);
+      parallel_ranges(count, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = done + begin; i < done + end; ++i)
+          found[i] = files_in(folders[i]);
+      });
+      for (std::size_t i = done; i < done + count; ++i)
+        for (const StoredFile& file : std::exchange(found[i], {}))
+          visit(file);
+    }
   }
 }
 

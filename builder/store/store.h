@@ -79,8 +79,8 @@ class Store {
     std::string fault{};        ///< what stands there in its place: "wanted a file, found a folder"
   };
   enum class Kind { object, record };
-  /// Throws Error(io) where a folder of the store cannot be listed: what is not seen is not to be taken
-  /// for absent.
+  /// In no particular order. Throws Error(io) where a folder of the store cannot be listed: what is not seen
+  /// is not to be taken for absent.
   void visit_files(Kind kind, const std::function<void(const StoredFile&)>& visit) const;
   enum class Health { absent, whole, damaged };
   /// Reads the file, or else the one of the same name that is not local, and leaves all as it is.

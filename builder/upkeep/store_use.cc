@@ -4,10 +4,14 @@
 #include "builder/db/named_products.h"
 #include "builder/make/image_keeper.h"
 #include "builder/plan/keys.h"
+#include "builder/store/killed_builds.h"
 #include "builder/store/made_record.h"
 #include "tracer/base/error.h"
+#include "tracer/base/parallel.h"
+#include "tracer/base/temporary_file.h"
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
 #include <unordered_map>
 #include <unordered_set>
@@ -73,10 +77,14 @@ Named named_by(Database& database, std::vector<DatasetUse>& datasets, bool forge
 }
 
 /// False for what is no object or record, which is noted.
-bool is_ours(const Store::StoredFile& file, StoreUse& use, const std::atomic<bool>& stop) {
+bool is_ours(const Store::StoredFile& file, bool others_run, StoreUse& use,
+             const std::atomic<bool>& stop) {
   if (stop) fail(ErrorKind::cancelled, "stopped; nothing is removed");
   if (!file.fault.empty()) {
     use.faults.push_back(fmt::format("{}: {}", file.path.string(), file.fault));
+  } else if (const auto process = process_of_temporary(file.path.filename().string());
+             others_run && process && is_running(*process)) {
+    use.temporaries_now.add(file.bytes);
   } else if (file.is_temporary) {
     use.temporaries.push_back(file.path);
     use.temporary_bytes += file.bytes;
@@ -103,61 +111,111 @@ void name_all_hashes(const std::string& text, HashSet& objects) {
   }
 }
 
+/// What a record says, or why it does not.
+struct ReadRecord {
+  Store::Health health = Store::Health::absent;
+  bool is_readable = true;
+  std::string text;  ///< where it is not
+  std::vector<RecordLine> lines;
+};
+
+ReadRecord read_record(const Store& store, Hash128 hash) {
+  ReadRecord read;
+  std::string text;
+  read.health = store.examine(Store::Kind::record, hash, &text);
+  if (read.health != Store::Health::whole) return read;
+  try {
+    read.lines = record_lines(text);
+    for (RecordLine& line : read.lines)
+      line.text = {};  // it goes with the text
+  } catch (const UnreadableRecord&) {
+    read.is_readable = false;
+    read.text = std::move(text);
+  }
+  return read;
+}
+
 /// Whether a dataset names what the record tells of, which is entered then. The sums of a film, by
 /// which it can be gone on with, are named where its film or picture is.
-bool enter_named(const std::vector<MadeProduct>& made, const Named& named, HashSet& objects,
-                 HashSet& products) {
-  const auto is_named = [&](const MadeProduct& one) {
-    return named.products.contains(one.product.key);
-  };
+bool enter_named(Hash128 record, const std::vector<RecordLine>& lines, const Named& named,
+                 HashSet& objects, HashSet& products, StoreUse& use) {
+  const auto is_named = [&](const RecordLine& line) { return named.products.contains(line.key); };
   // A mask may be of many pictures: it keeps none of them.
-  const bool of_named_picture = std::any_of(made.begin(), made.end(), [&](const MadeProduct& one) {
-    return is_named(one) && (one.product.kind == "film" || one.product.kind == "image");
-  });
-  bool any = false;
-  for (const MadeProduct& one : made) {
-    if (!is_named(one) && !(of_named_picture && one.product.kind == k_sums_kind)) continue;
-    any = true;
-    objects.insert(one.product.object);
-    products.insert(one.product.key);
+  const bool of_named_picture =
+      std::any_of(lines.begin(), lines.end(), [&](const RecordLine& line) {
+        return is_named(line) && (line.kind == "film" || line.kind == "image");
+      });
+  PartlyNamed partly{record, {}};
+  for (const RecordLine& line : lines) {
+    if (!is_named(line) && !(of_named_picture && line.kind == k_sums_kind)) {
+      partly.unnamed.push_back(line.key);
+      continue;
+    }
+    objects.insert(line.object);
+    products.insert(line.key);
   }
+  const bool any = partly.unnamed.size() < lines.size();
+  if (any && !partly.unnamed.empty()) use.partly_named.push_back(std::move(partly));
   return any;
 }
 
-/// Reads all records.
+/// Reads all records, on several threads.
 void look_at_records(const Store& store, const Named& named, HashSet& objects, HashSet& products,
-                     StoreUse& use, const std::atomic<bool>& stop) {
+                     bool others_run, StoreUse& use, const std::atomic<bool>& stop) {
+  std::vector<Store::StoredFile> files;
   store.visit_files(Store::Kind::record, [&](const Store::StoredFile& file) {
-    if (!is_ours(file, use, stop)) return;
-    StoreFileUse found{Store::Kind::record, *file.hash, file.bytes, file.written, false};
-    std::string text;
-    const Store::Health health = store.examine(Store::Kind::record, *file.hash, &text);
-    if (health == Store::Health::absent) return;  // it has just gone
-    if (health == Store::Health::damaged) {
-      use.faults.push_back(fmt::format("{}: is damaged", file.path.string()));
+    if (is_ours(file, others_run, use, stop)) files.push_back(file);
+  });
+  std::vector<ReadRecord> records(files.size());
+  parallel_ranges(files.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end && !stop; ++i)
+      records[i] = read_record(store, *files[i].hash);
+  });
+  if (stop) fail(ErrorKind::cancelled, "stopped; nothing is removed");
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const ReadRecord& record = records[i];
+    if (record.health == Store::Health::absent) continue;  // it has just gone
+    StoreFileUse found{Store::Kind::record, *files[i].hash, files[i].bytes, files[i].written};
+    if (record.health == Store::Health::damaged) {
+      use.faults.push_back(fmt::format("{}: is damaged", files[i].path.string()));
+    } else if (record.is_readable) {
+      found.is_named = enter_named(found.hash, record.lines, named, objects, products, use);
     } else {
-      try {
-        found.is_named = enter_named(from_record(text), named, objects, products);
-      } catch (const UnreadableRecord&) {
-        ++use.unreadable;
-        found.is_named = true;
-        name_all_hashes(text, objects);
-      }
+      ++use.unreadable;
+      found.is_named = true;
+      name_all_hashes(record.text, objects);
     }
     use.files.push_back(found);
-  });
+  }
+}
+
+void look_at_database(Database& database, StoreUse& use) {
+  const DatabaseSize size = size_of(database);
+  use.database_bytes = size.bytes;
+  use.database_free = size.free_bytes;
+}
+
+void mark_being_made(const std::vector<RunningBuild>& running, StoreUse& use) {
+  if (running.empty()) return;
+  const auto first = std::min_element(
+      running.begin(), running.end(),
+      [](const RunningBuild& a, const RunningBuild& b) { return a.since < b.since; });
+  for (StoreFileUse& file : use.files)
+    file.is_being_made = !file.is_named && file.written >= first->since;
 }
 
 }  // namespace
 
 StoreUse look_at_store(const Store& store, Database& database, bool forget_gone,
-                       const std::atomic<bool>& stop) {
+                       const std::vector<RunningBuild>& running, const std::atomic<bool>& stop) {
   StoreUse use;
+  look_at_database(database, use);
   use.datasets = datasets_of(store, database);
   use.unknown = unknown_datasets(store, use.datasets);
   const Named named = named_by(database, use.datasets, forget_gone);
   HashSet objects = named.objects, products = named.products;
-  look_at_records(store, named, objects, products, use, stop);
+  const bool others_run = !running.empty();
+  look_at_records(store, named, objects, products, others_run, use, stop);
   std::unordered_map<Hash128, std::string, HashOfHash> kinds;
   visit_products(database, [&](Hash128 key, std::string_view kind, Hash128 object) {
     if (products.contains(key)) {
@@ -169,7 +227,7 @@ StoreUse look_at_store(const Store& store, Database& database, bool forget_gone,
   });
   HashSet there;
   store.visit_files(Store::Kind::object, [&](const Store::StoredFile& file) {
-    if (!is_ours(file, use, stop)) return;
+    if (!is_ours(file, others_run, use, stop)) return;
     const bool is_named = objects.contains(*file.hash);
     if (is_named) {
       const auto kind = kinds.find(*file.hash);
@@ -178,6 +236,7 @@ StoreUse look_at_store(const Store& store, Database& database, bool forget_gone,
     }
     use.files.push_back({Store::Kind::object, *file.hash, file.bytes, file.written, is_named});
   });
+  mark_being_made(running, use);
   use.missing = static_cast<std::uint64_t>(
       std::count_if(named.objects.begin(), named.objects.end(),
                     [&](Hash128 object) { return !there.contains(object); }));

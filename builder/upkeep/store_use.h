@@ -2,6 +2,7 @@
 #pragma once
 
 #include "builder/store/dataset.h"
+#include "builder/upkeep/running_builds.h"
 
 #include <atomic>
 #include <cstdint>
@@ -37,6 +38,14 @@ struct StoreFileUse {
   std::uint64_t bytes = 0;
   std::filesystem::file_time_type written;
   bool is_named = false;
+  bool is_being_made =
+      false;  ///< not named, and written since the first of the builds began that run
+};
+
+/// A record that a dataset names, with products that none does.
+struct PartlyNamed {
+  Hash128 record;
+  std::vector<Hash128> unnamed;  ///< keys of products
 };
 
 struct StoreUse {
@@ -49,14 +58,19 @@ struct StoreUse {
   std::vector<std::filesystem::path> strangers;    ///< files that are not the store's: left alone
   std::vector<std::filesystem::path> temporaries;  ///< of killed writers
   std::uint64_t temporary_bytes = 0;
+  Amount temporaries_now;  ///< of processes that run on this machine: none of those above
+  std::vector<PartlyNamed> partly_named;
+  std::uint64_t database_bytes = 0;       ///< of its file and its log
+  std::uint64_t database_free = 0;        ///< of those, what holds nothing
   std::map<std::string, Amount> by_kind;  ///< named objects by what they are: "image", "film"
   std::uint64_t missing = 0;              ///< objects that a dataset names and that are not there
   std::vector<Hash128> unnamed_products;  ///< keys, of the database
 };
 
-/// `forget_gone`: as if datasets whose folder is gone named nothing. Reads the database and every
-/// record, not the objects, and leaves all as it is. Throws Error(cancelled) where `stop` is set.
+/// `forget_gone`: as if datasets whose folder is gone named nothing. `running`: who may put files there
+/// meanwhile. Reads the database and every record, not the objects, and leaves all as it is. Throws
+/// Error(cancelled) where `stop` is set.
 StoreUse look_at_store(const Store& store, Database& database, bool forget_gone,
-                       const std::atomic<bool>& stop);
+                       const std::vector<RunningBuild>& running, const std::atomic<bool>& stop);
 
 }  // namespace ds

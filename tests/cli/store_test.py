@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """dsbuild store stats|gc|verify, and dsbuild clean: what datasets name stays, whatever is killed."""
 import hashlib
+import json
 import os
 import shutil
 import signal
@@ -51,11 +52,13 @@ class StoreTest(TinyCase):
         left_over = (self.files("objects") | self.files("records")) - wanted
         self.assertEqual(found["unnamed"], {"files": len(left_over), "bytes": sum(p.stat().st_size for p in left_over)})
         self.assertEqual(len(left_over), 3 * IMAGES, "film, picture and record of each; the mask is that of both")
+        self.assertEqual(self.task("gc", "--older", "1h")["objects"]["files"], 0)
         dry = self.task("gc", "--dry-run")
         self.assertEqual((dry["objects"]["files"], dry["records"]["files"]), (2 * IMAGES, IMAGES))
         self.assertEqual(self.files("objects") | self.files("records"), wanted | left_over)
-        self.assertEqual(self.task("gc", "--older", "1h")["objects"]["files"], 0)
-        self.assertEqual({**self.task("gc"), "dry_run": True}, dry)
+        done = self.task("gc")
+        self.assertGreater(done["database_left"], 0)
+        self.assertEqual({**done, "dry_run": True, "database_left": None}, dry)
         self.assertEqual(self.files("objects") | self.files("records"), wanted)
         self.assertEqual(self.contents(self.folder / "a"), before)
         self.assert_nothing_to_do("a")
@@ -69,7 +72,18 @@ class StoreTest(TinyCase):
     def test_what_gc_took_is_not_missed_by_who_gathers(self):
         self.make("a")
         self.make("a", "--set", "engine.spp=2")
-        self.assertEqual(self.task("gc")["objects"]["files"], 2 * IMAGES, "the masks are those of both")
+        older = self.folder / "older"
+        shutil.copytree(self.store, older)
+        done = self.task("gc")
+        self.assertEqual((done["objects"]["files"], done["lines"]), (2 * IMAGES, 2 * IMAGES), "the masks are those of both")
+        found = self.task("gather", self.folder / "other")
+        self.assertEqual((found["missing"], found["faults"]), (0, 0))
+        # An older dsbuild left the lines of what it took.
+        left = {path.name for path in self.files("objects")}
+        self.store = older
+        for path in self.files("objects"):
+            if path.name not in left:
+                path.unlink()
         found = self.task("gather", self.folder / "other")
         self.assertEqual((found["missing"], found["faults"]), (2 * IMAGES, 0))
         self.store = self.folder / "other"
@@ -86,14 +100,105 @@ class StoreTest(TinyCase):
         for path in old:
             os.utime(path, (1_000_000, 1_000_000))
         size = sum(path.stat().st_size for path in self.files("objects") | self.files("records"))
+        database = (self.store / "dsbuild.sqlite").stat().st_size
         gone = sum(path.stat().st_size for path in old) // 2
-        result = self.task("gc", "--size", size - gone)
-        self.assertLessEqual(result["kept"]["bytes"], size - gone)
+        result = self.task("gc", "--size", size + database - gone)
+        self.assertLessEqual(result["kept"]["bytes"] + result["database_left"], size + database - gone)
+        self.assertEqual(result["database_left"], (self.store / "dsbuild.sqlite").stat().st_size)
         self.assertTrue(all(path.exists() for path in middle))
         self.assertLess(len([path for path in old if path.exists()]), len(old))
         run = self.run_it("store", "gc", self.store, "--size", "1k")
         self.assertIn("takes more than --size 1k", run.err)
         self.assert_nothing_to_do("a")
+
+    def rows(self, table, columns, store=None):
+        with sqlite3.connect(f"file:{(store or self.store) / 'dsbuild.sqlite'}?mode=ro", uri=True) as database:
+            return set(database.execute(f"SELECT {columns} FROM {table}"))
+
+    def test_the_database_counts_and_shrinks(self):
+        self.make("a")
+        file = self.store / "dsbuild.sqlite"
+        self.assertEqual(self.task("stats")["database"], {"bytes": file.stat().st_size, "free": 0})
+        for spp in range(2, 8):
+            self.make(f"b{spp}", "--set", f"engine.spp={spp}", "--set", "outputs.mask=false")
+            shutil.rmtree(self.folder / f"b{spp}")
+        large = file.stat().st_size
+        dry = self.task("gc", "--forget", "-n")
+        self.assertEqual((dry["database"], file.stat().st_size), (large, large))
+        done = self.task("gc", "--forget")
+        self.assertEqual(done["database_left"], file.stat().st_size)
+        self.assertLess(file.stat().st_size, large)
+        self.assertEqual(self.task("stats")["database"], {"bytes": file.stat().st_size, "free": 0})
+        self.assert_nothing_to_do("a")
+        # What is left is what a store has that never had the others.
+        self.build("--store", self.folder / "fresh", out=self.folder / "c")
+        for table, columns in (("text", "*"), ("product", "key, object"), ("image", "id, model, engine, files")):
+            self.assertEqual(self.rows(table, columns), self.rows(table, columns, self.folder / "fresh"), table)
+
+    def test_dead_lines_of_records_go(self):
+        self.make("a")
+        other = ["--set", "outputs.tone_map=linear", "--set", "outputs.tone_map_scale=0.5"]
+        self.make("a", *other)  # the same films and masks, other pictures
+        lines = sum(len(path.read_text().splitlines()) for path in self.files("records"))
+        dry = self.task("gc", "-n")
+        done = self.task("gc")
+        self.assertEqual((dry["lines"], done["lines"], done["records"]["files"]), (IMAGES, IMAGES, 0))
+        self.assertEqual(done["kept"]["bytes"], sum(path.stat().st_size for path in self.files("objects") | self.files("records")))
+        records = [json.loads(line) for path in self.files("records") for line in path.read_text().splitlines()]
+        self.assertEqual(len(records), lines - IMAGES)
+        for record in records:
+            self.assertTrue((self.store / "objects" / record["object"][:2] / record["object"][2:]).exists(), record)
+        self.assertEqual(self.task("verify")["damaged"], 0)
+        self.assertEqual(self.task("gc")["lines"], 0)
+        # They still are enough where the database is lost.
+        for path in self.store.glob("dsbuild.sqlite*"):
+            path.unlink()
+        self.assert_counts(self.make("a", *other), traced=0, developed=0)
+        self.assertEqual(self.task("stats")["unnamed"]["files"], 0)
+
+    def test_what_a_build_is_at_is_its(self):
+        self.make("a")
+        other = self.folder / "other"
+        self.build("--store", other, "--set", "engine.spp=3", out=self.folder / "b")
+        mine = {path.name for path in self.files("objects")}
+        old, new = [path for path in sorted(other.glob("objects/*/*")) if path.name not in mine][:2]
+
+        def put(path):
+            to = self.store / "objects" / path.parent.name / path.name
+            to.parent.mkdir(exist_ok=True)
+            shutil.copy(path, to)
+            return to
+
+        os.utime(put(old), (1_000_000_000, 1_000_000_000))
+        build = self.start("build", self.recipe, "-o", self.folder / "a", "--store", self.store, "--set", "engine.spp=1000000")
+        self.addCleanup(build.kill)
+        deadline = time.monotonic() + 60
+        while not self.running():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+        put(new)  # as what a build writes before it tells the database
+        found = self.task("stats")
+        self.assertEqual((found["unnamed"]["files"], found["being_made"]["files"], len(found["running"])), (1, 1, 1))
+        self.assertRegex(found["running"][0], r"^process \d+ on .*, which builds tiny$")
+        run = self.run_it("store", "stats", self.store)
+        self.assertRegex(run.out, r"  at work: process \d+ on .*, which builds tiny\n  written since, and named by no dataset yet: 1 files, ")
+        dry = self.task("gc", "-n")
+        self.assertEqual((dry["objects"]["files"], dry["being_made"]["files"], dry["running"]), (1, 1, found["running"]))
+        build.kill()
+        build.communicate(timeout=60)
+        deadline = time.monotonic() + 60
+        while self.task("stats")["running"]:  # its other process goes, too
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.05)
+        found = self.task("stats")
+        self.assertEqual((found["unnamed"]["files"], found["being_made"]["files"]), (2, 0))
+        # One that has its database elsewhere is at work, too.
+        (self.store / "guests").mkdir(exist_ok=True)
+        (self.store / "guests/elsewhere.17").write_text("build it")
+        os.utime(self.store / "guests/elsewhere.17", (time.time() - 3600, time.time() - 3600))
+        found = self.task("stats")
+        self.assertEqual(found["running"], ["process 17 on elsewhere, which has its database elsewhere (build it)"])
+        self.assertEqual((found["unnamed"]["files"], found["being_made"]["files"]), (1, 1))
 
     def test_a_dataset_that_is_gone_is_forgotten_when_asked(self):
         self.make("a")

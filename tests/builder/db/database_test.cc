@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/db/database.h"
 
+#include "builder/db/named_products.h"
 #include "builder/db/schema.h"
+#include "builder/db/unused_texts.h"
 #include "tracer/base/files.h"
 
 #include <gmock/gmock.h>
@@ -50,6 +52,44 @@ TEST(Database, KeepsPixelCountsAndAddsThoseThatWereNotMade) {
   EXPECT_EQ(database.find_product(k_a)->facts, product.facts);
   database.add_pixel_counts(k_b, {1, 1, 1, 1});  // nobody's
   EXPECT_FALSE(database.find_product(k_b));
+}
+
+TEST(Database, KnowsTextsThatNoImageNeeds) {
+  Database database{std::filesystem::path()};
+  const auto put = [&](const std::string& body) {
+    database.put_text(hash_text(body), body);
+    return hash_text(body);
+  };
+  const Hash128 deep = put("far below"), unused = put("nobody's"), of_other = put("of the other");
+  const Hash128 middle = put("program: @" + deep.hex() + "\nscale: 1 @ " + unused.hex() + "\n");
+  const Hash128 part = put("kd: @" + middle.hex());
+  database.put_image("d", "a", {part, k_a, k_a, k_a, k_a, k_a});
+  database.put_image("e", "a", {k_b, of_other, k_a, k_a, k_a, part});
+  EXPECT_EQ(unused_texts(database, {}), std::vector{unused});
+  EXPECT_THAT(unused_texts(database, {"e"}), testing::UnorderedElementsAre(unused, of_other));
+  EXPECT_EQ(unused_texts(database, {"d", "e"}).size(), 5U);
+  remove_text(database, unused);
+  EXPECT_FALSE(database.find_text(unused));
+  EXPECT_TRUE(database.find_text(deep));
+}
+
+TEST(Database, GivesBackWhatHoldsNothing) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "a.sqlite";
+  Database database(file);
+  for (std::uint64_t i = 0; i < 200; ++i)
+    database.put_text({i, i}, std::string(4000, 'x'));
+  EXPECT_EQ(size_of(database).free_bytes, 0U);
+  for (std::uint64_t i = 0; i < 190; ++i)
+    remove_text(database, {i, i});
+  const DatabaseSize before = size_of(database);
+  EXPECT_GE(before.free_bytes, 190U * 4000);
+  shrink(database);
+  const DatabaseSize after = size_of(database);
+  EXPECT_EQ(after.free_bytes, 0U);
+  EXPECT_EQ(after.bytes, std::filesystem::file_size(file)) << "the log is empty";
+  EXPECT_LE(after.bytes, before.bytes - before.free_bytes);
+  EXPECT_TRUE(database.find_text({195, 195}));
 }
 
 TEST(Database, KeepsSpheresByModelAndReader) {

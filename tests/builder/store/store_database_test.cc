@@ -51,6 +51,42 @@ TEST(MadeRecord, RefusesOtherTexts) {
   EXPECT_THROW(from_record("no json\n"), UnreadableRecord);
 }
 
+void expect_lines(const std::string& text) {
+  const std::vector<MadeProduct> made = from_record(text);
+  const std::vector<RecordLine> lines = record_lines(text);
+  ASSERT_EQ(lines.size(), made.size());
+  std::string all;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    EXPECT_EQ(lines[i].key, made[i].product.key);
+    EXPECT_EQ(lines[i].object, made[i].product.object);
+    EXPECT_EQ(lines[i].kind, made[i].product.kind);
+    all += lines[i].text;
+  }
+  EXPECT_EQ(all, text);
+}
+
+TEST(MadeRecord, SaysTheSameAtAGlance) {
+  MadeProduct tricky = some_product(3);
+  tricky.run.device = R"(,"key":"00000000000000000000000000000000","object":"a\b")";
+  tricky.product.pixel_counts.objects = {ObjectCounts{101, 1, 2, 3, 4, 5, 6, 7}};
+  tricky.product.relative_error = 0.5;
+  const std::string text = to_record({some_product(1), tricky, some_product(2)});
+  expect_lines(text);
+  expect_lines("");
+  // Other orders and spaces of the same members.
+  std::string other = to_record({some_product(1)});
+  const std::size_t key = other.find(",\"key\":"), kind = other.find(",\"kind\":");
+  const std::string member = other.substr(key, kind - key);
+  other.erase(key, kind - key);
+  other.insert(other.size() - 2, member);
+  expect_lines(other);
+  expect_lines(text.substr(0, text.size() - 1));
+  for (const std::size_t length : {std::size_t{5}, text.find("\"object\"") + 15, text.size() - 3})
+    EXPECT_THROW(record_lines(text.substr(0, length)), UnreadableRecord) << length;
+  EXPECT_THROW(record_lines(text + "\n"), UnreadableRecord);
+  EXPECT_THROW(record_lines("no json\n"), UnreadableRecord);
+}
+
 class StoreDatabaseTest : public testing::Test {
  protected:
   std::unique_ptr<Database> open() { return open_database(store_, claims_); }
