@@ -152,6 +152,32 @@ std::optional<LineGlance> glance_at(std::string_view line) {
   return glance;
 }
 
+std::optional<std::vector<FileRecord>> files_at_glance(std::string_view line) {
+  constexpr std::size_t k_sha256_digits = 64;
+  std::vector<FileRecord> all;
+  Cursor at(line);
+  Cursor files = at.inside(R"("files":)", '[', R"(],"files_key":)");
+  // One that lacks a member is not to take the next file's.
+  bool follow = true;
+  const auto next = [&](std::string_view key) {
+    follow = follow && files.follows(key);
+    return key;
+  };
+  while (files.ok() && files.has(R"("kind":)")) {
+    FileRecord& file = all.emplace_back();
+    file.kind = files.text(R"("kind":)");
+    file.path = files.text(next(R"(,"path":)"));
+    file.pixels = files.hash(next(R"(,"pixels_xxh128":)"));
+    file.hashes.sha256 = files.text(next(R"(,"sha256":)"));
+    file.hashes.size_bytes = files.count(next(R"(,"size_bytes":)"));
+    file.hashes.xxh128 = files.hash(next(R"(,"xxh128":)"));
+    if (!follow || file.hashes.sha256.size() != k_sha256_digits) return std::nullopt;
+  }
+  at.text(R"("id":)");
+  if (!at.ok() || !files.ok()) return std::nullopt;
+  return all;
+}
+
 std::string draws_text(std::optional<std::uint64_t> attempts, const DrawRecords& draws) {
   return (attempts ? fmt::format("{} ", *attempts) : "") +
          (draws.empty() ? "" : canonical_json(to_json_value(draws)));

@@ -35,6 +35,8 @@ struct LineGlance {
 /// escaped, or where it is another line: `image_from_json_line` then tells.
 std::optional<LineGlance> glance_at(std::string_view line);
 LineGlance glance_at(const ImageRecord& image);
+/// The line's files, whole. Nothing where glance_at gives nothing.
+std::optional<std::vector<FileRecord>> files_at_glance(std::string_view line);
 /// Of each line of manifest/images.jsonl, which holds until `visit` returns. Throws as
 /// read_images_manifest, of the first line that is wrong where a glance shows it.
 void visit_glances(const std::filesystem::path& folder,

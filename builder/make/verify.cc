@@ -5,19 +5,22 @@
 #include "builder/make/older_lines.h"
 #include "builder/make/plane_outputs.h"
 #include "builder/plan/image_scene.h"
+#include "manifests/manifest_glance.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
 #include "tracer/base/hash_stream.h"
+#include "tracer/base/parallel.h"
 #include "tracer/render/develop.h"
 
 #include <algorithm>
-#include <atomic>
 #include <exception>
+#include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
+#include <string_view>
 #include <system_error>
-#include <thread>
 
 namespace ds {
 namespace {
@@ -72,48 +75,72 @@ bool is_as_listed(const fs::path& folder, const FileRecord& wanted) {
   }
 }
 
+/// What a manifest lists.
+struct Listed {
+  std::uint64_t images = 0;
+  std::vector<FileRecord> files;
+};
+
+/// Of the lines that stand there as a dsbuild wrote them: their files are all that is looked at.
+Listed listed_at_glance(const std::string& text) {
+  Listed listed;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view line = std::string_view(text).substr(at, end - at);
+    auto files = files_at_glance(line);
+    const auto line_number = static_cast<int>(++listed.images);
+    if (!files)
+      files = image_from_json_line(std::string(line), k_images_manifest, line_number).files;
+    for (FileRecord& one : *files) {
+      check_manifest_path(one.path);
+      listed.files.push_back(std::move(one));
+    }
+    at = end + 1;
+  }
+  return listed;
+}
+
+/// A manifest that its checksum bears out is as it was written, and need not be read whole: that costs ten times
+/// as much as a glance. Throws as read_images_manifest.
+Listed read_listed(const fs::path& folder,
+                   const std::optional<std::map<std::string, Hash128>>& sums) {
+  const fs::path file = folder / k_images_manifest;
+  std::error_code error;
+  const auto sum = sums ? sums->find(k_images_manifest) : decltype(sums->find("")){};
+  if (sums && sum != sums->end() && fs::is_regular_file(file, error)) {
+    const std::string text = read_text_file(file);
+    if (hash_text(text) == sum->second && text.ends_with('\n')) return listed_at_glance(text);
+  }
+  Listed listed;
+  for (ImageRecord& image : read_images_manifest(folder)) {
+    ++listed.images;
+    std::move(image.files.begin(), image.files.end(), std::back_inserter(listed.files));
+  }
+  return listed;
+}
+
 /// The files that are not what the manifest says, in its order. One thread a core: most of the time
 /// goes into hashes.
 std::vector<const FileRecord*> differing_files(const fs::path& folder,
-                                               const std::vector<ImageRecord>& images) {
-  std::atomic<std::size_t> next{0};
-  std::vector<char> as_listed(images.size());
-  const auto look = [&] {
-    for (std::size_t i = next++; i < images.size(); i = next++)
-      as_listed[i] = std::all_of(images[i].files.begin(), images[i].files.end(),
-                                 [&](const FileRecord& file) { return is_as_listed(folder, file); })
-                         ? 1
-                         : 0;
-  };
-  {
-    std::vector<std::jthread> helpers;
-    constexpr std::size_t k_worth_a_thread = 64, k_most = 32;
-    const std::size_t wanted = std::min<std::size_t>(
-        {std::thread::hardware_concurrency(), images.size() / k_worth_a_thread, k_most});
-    try {
-      while (helpers.size() + 1 < wanted)
-        helpers.emplace_back(look);
-    } catch (const std::system_error&) {  // the system has no more of them
-    }
-    look();
-  }
+                                               const std::vector<FileRecord>& files) {
+  std::vector<char> as_listed(files.size());
+  parallel_ranges(files.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      as_listed[i] = is_as_listed(folder, files[i]) ? 1 : 0;
+  });
   std::vector<const FileRecord*> differing;
-  for (std::size_t i = 0; i < images.size(); ++i)
-    if (as_listed[i] == 0)
-      for (const FileRecord& file : images[i].files)
-        differing.push_back(&file);
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (as_listed[i] == 0) differing.push_back(&files[i]);
   return differing;
 }
 
 /// The checksum file against the manifest: it is what people without dsbuild check.
 void check_checksums(VerifyResult& result, const fs::path& folder,
-                     const std::map<std::string, Hash128>& listed) {
+                     const std::map<std::string, Hash128>& listed,
+                     const std::map<std::string, Hash128>& sums) {
   const auto add = [&](const std::string& path, const std::string& what) {
     result.findings.push_back({Finding::Kind::manifest, path, what, ""});
   };
-  const auto known = read_checksums(result, folder, k_checksums);
-  if (!known) return;
-  const std::map<std::string, Hash128>& sums = *known;
   const std::string sums_file = k_checksums;
   std::error_code error;
   for (const auto& [path, hash] : listed) {
@@ -247,31 +274,36 @@ std::string to_text(const Finding& finding) {
 }
 
 VerifyResult verify_files(const fs::path& folder) {
-  VerifyResult result;
-  std::map<std::string, Hash128> listed;
-  std::vector<ImageRecord> images;
+  VerifyResult result, of_checksums;
+  const auto sums = read_checksums(of_checksums, folder, k_checksums);
+  const auto add_of_checksums = [&] {
+    std::move(of_checksums.findings.begin(), of_checksums.findings.end(),
+              std::back_inserter(result.findings));
+  };
+  Listed manifest;
   try {
-    images = read_images_manifest(folder);
+    manifest = read_listed(folder, sums);
   } catch (const Error& error) {
     std::error_code ignored;
     if (!fs::is_regular_file(folder / k_images_manifest, ignored)) throw;
     result.has_manifest = false;
     result.findings.push_back({Finding::Kind::manifest, k_images_manifest, error.what(), ""});
-    if (const auto sums = read_checksums(result, folder, k_checksums)) {
+    add_of_checksums();
+    if (sums) {
       compare_with_checksums(result, folder, *sums, k_own_files, k_checksums);
       find_extra(result, folder, *sums, k_own_files);
     }
     return result;
   }
-  result.images = images.size();
-  for (const ImageRecord& image : images)
-    for (const FileRecord& file : image.files) {
-      ++result.files;
-      listed.emplace(file.path, file.hashes.xxh128);
-    }
-  for (const FileRecord* file : differing_files(folder, images))
+  result.images = manifest.images;
+  result.files = manifest.files.size();
+  for (const FileRecord* file : differing_files(folder, manifest.files))
     check_file(result, folder, *file);
-  check_checksums(result, folder, listed);
+  std::map<std::string, Hash128> listed;
+  for (const FileRecord& file : manifest.files)
+    listed.emplace(file.path, file.hashes.xxh128);
+  add_of_checksums();
+  if (sums) check_checksums(result, folder, listed, *sums);
   find_extra(result, folder, listed, k_own_files);
   return result;
 }

@@ -87,11 +87,10 @@ void read_patterns(const Settings& settings, std::string_view key, Recipe& recip
     }
     const RecipeValue drawn = as_distribution(value);
     // Materials have no places.
-    const DrawnKind kind = of_environment || !is_of_points(value) ? kind_of_vary(value)
-                                                                  : DrawnKind::number;
-    auto distribution =
-        read_distribution(drawn, kind,
-                          of_environment ? NumberRange{} : range_of(vary.property), complain);
+    const DrawnKind kind =
+        of_environment || !is_of_points(value) ? kind_of_vary(value) : DrawnKind::number;
+    auto distribution = read_distribution(
+        drawn, kind, of_environment ? NumberRange{} : range_of(vary.property), complain);
     if (!distribution) continue;
     recipe.drawn.push_back({fmt::format("{}.{}", key, vary.pattern), to_toml(with_numbers(drawn)),
                             *std::move(distribution), nullptr});

@@ -36,6 +36,21 @@ void expect_same(const LineGlance& a, const LineGlance& b) {
   }
 }
 
+/// Files with all that is known of them.
+void expect_same_files(const std::string& line, const std::vector<FileRecord>& wanted) {
+  const auto files = files_at_glance(line);
+  ASSERT_TRUE(files);
+  ASSERT_EQ(files->size(), wanted.size());
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    EXPECT_EQ((*files)[i].path, wanted[i].path);
+    EXPECT_EQ((*files)[i].kind, wanted[i].kind);
+    EXPECT_EQ((*files)[i].pixels, wanted[i].pixels);
+    EXPECT_EQ((*files)[i].hashes.xxh128, wanted[i].hashes.xxh128);
+    EXPECT_EQ((*files)[i].hashes.sha256, wanted[i].hashes.sha256);
+    EXPECT_EQ((*files)[i].hashes.size_bytes, wanted[i].hashes.size_bytes);
+  }
+}
+
 ImageRecord record(const std::string& model) {
   ImageRecord image;
   image.id = model + "/3";
@@ -82,6 +97,7 @@ TEST(ManifestGlance, SeesWhatTheLineSays) {
     ASSERT_TRUE(glance) << model;
     expect_same(*glance, glance_at(image));
     EXPECT_EQ(glance->draws, R"({"camera.target":[0.5,0.25,1.0],"n":3})");
+    expect_same_files(line, image.files);
     ImageRecord drawn = image;
     drawn.other_classes.clear();
     const std::string classless = to_json_line(drawn);
@@ -99,6 +115,7 @@ TEST(ManifestGlance, SeesWhatTheLineSays) {
     const std::string bare = to_json_line(image);
     ASSERT_TRUE(glance_at(bare));
     expect_same(*glance_at(bare), glance_at(image));
+    expect_same_files(bare, {});
   }
 }
 
@@ -114,6 +131,14 @@ TEST(ManifestGlance, LeavesToAReaderWhatIsEscapedOrNoSuchLine) {
   const std::string line = to_json_line(record("mug.ply"));
   EXPECT_FALSE(glance_at(""));
   EXPECT_FALSE(glance_at("{}"));
+  EXPECT_FALSE(files_at_glance("{}"));
+  for (const char* key :
+       {"\"path\"", "\"sha256\":\"a", "\"size_bytes\"", "pixels_xxh128", ",\"id\""}) {
+    std::string wrong = line;
+    EXPECT_TRUE(files_at_glance(wrong));
+    EXPECT_FALSE(files_at_glance(wrong.erase(wrong.find(key), std::string_view(key).size())))
+        << key;
+  }
   for (std::size_t size = 0; size + 9 < line.size(); ++size)
     EXPECT_FALSE(glance_at(std::string_view(line).substr(0, size))) << size;
 }

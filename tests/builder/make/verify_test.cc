@@ -87,6 +87,36 @@ TEST_F(VerifyTest, SeesAManifestThatContradictsItself) {
   EXPECT_THAT(verify(), ElementsAre(Pair("missing", "manifest/checksums.xxh128")));
 }
 
+/// What its checksum bears out is looked at, and what it does not is read whole: both find the same.
+TEST_F(VerifyTest, FindsTheSameWhateverItKnowsOfTheManifest) {
+  build();
+  const fs::path sums = output() / "manifest/checksums.xxh128";
+  const std::string text = read_text_file(sums);
+  std::string other = text;
+  const std::size_t at = other.find("  manifest/images.jsonl") - 1;
+  other[at] = other[at] == '0' ? '1' : '0';
+  write_file_atomic(output() / "images/box.off/0.png", std::string_view("no picture"));
+  fs::remove(output() / "images/box.off/1.png");
+  const VerifyResult known = verify_files(output());
+  EXPECT_EQ(known.images, k_images);
+  EXPECT_EQ(known.files, 2 * k_images);
+  write_file_atomic(sums, other);
+  const VerifyResult read = verify_files(output());
+  EXPECT_EQ(read.images, known.images);
+  EXPECT_EQ(read.files, known.files);
+  Findings wanted = short_form(known);
+  wanted.emplace_back("manifest", "manifest/images.jsonl");
+  EXPECT_EQ(short_form(read), wanted);
+  // A line that is none is told with its number.
+  const fs::path images = output() / "manifest/images.jsonl";
+  std::string lines = read_text_file(images);
+  const std::size_t spp = lines.find("\"spp\":", lines.find('\n'));
+  write_file_atomic(images, lines.replace(spp, 6, "\"spp\":x"));
+  const VerifyResult damaged = verify_files(output());
+  EXPECT_FALSE(damaged.has_manifest);
+  EXPECT_THAT(damaged.findings.at(0).what, testing::HasSubstr("images.jsonl:2: "));
+}
+
 TEST_F(VerifyTest, ComparesWithTheRecipe) {
   build();
   edit("materials/red.mat", "kd = 0.7 0.1 0.1", "kd = 0.6 0.1 0.1");

@@ -252,7 +252,8 @@ TEST_F(DrawsTest, APatternMustNameAProperty) {
               testing::HasSubstr("must name a property of each material, found none in green.mat"));
   EXPECT_THAT(message("\"kd\"=0.1"), testing::HasSubstr("must be NAME.PROPERTY"));
   EXPECT_THAT(message("\"*.kd\"={uniform=[0,2]}"), testing::HasSubstr("in [0, 1]"));
-  EXPECT_THAT(message("\"*.kd\"={ball=1}"), testing::HasSubstr("{ball} gives another kind of value"));
+  EXPECT_THAT(message("\"*.kd\"={ball=1}"),
+              testing::HasSubstr("{ball} gives another kind of value"));
   EXPECT_THAT(message("\"*.kd\"={unifrom=[0,1]}"), testing::HasSubstr("did you mean uniform?"));
   EXPECT_EQ(message("\"red.kd?\"=0.1"), "");
 }
