@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/make/made_journal.h"
 
+#include <cstddef>
 #include <sys/mman.h>
 #include <unistd.h>
 
