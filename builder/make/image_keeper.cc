@@ -300,6 +300,10 @@ Product ImageKeeper::developed(Ready& ready, const OutputFile& output,
 Product ImageKeeper::plane_file(Ready& ready, const OutputFile& output,
                                 const TracedImage& traced) const {
   Product product = product_of(output.key, output.kind);
+  if (is_cut_out(dataset_.recipe.outputs, output))
+    return keep_bytes(ready, std::move(product),
+                      encode_cut_out(output, traced.light_planes, *traced.film, traced.tone_map),
+                      traced.light_run);
   if (is_of_light(*output.plane))
     return keep_bytes(ready, std::move(product),
                       encode_output(dataset_.recipe.outputs, output, traced.light_planes),

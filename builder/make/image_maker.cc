@@ -180,12 +180,14 @@ void ImageMaker::obtain(Work& work, const OutputFile& output) {
   if (traced.made_before.back()) return;
   if (!work.force) traced.known.back() = find_whole(output.key);
   if (traced.known.back()) return;
-  if (output.plane == nullptr) {
+  const bool is_light = output.plane != nullptr && is_of_light(*output.plane);
+  if (is_light) trace_light(work);
+  if (output.plane == nullptr || is_cut_out(dataset_.recipe.outputs, output)) {
     obtain_film(work);
     traced.tone_map =
         tone_map_of(dataset_.recipe, inputs_.environment(work.image.spec.environment_folder));
-  } else if (is_of_light(*output.plane)) {
-    trace_light(work);
+  } else if (is_light) {
+    return;
   } else if (traced.planes.empty()) {
     const Stopwatch watch;
     trace_planes(work);

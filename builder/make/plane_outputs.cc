@@ -38,7 +38,17 @@ std::vector<const PlaneType*> wanted_light_planes(const OutputSettings& outputs)
   std::vector<const PlaneType*> types;
   for (const PlaneOutput& plane : outputs.planes)
     if (is_of_light(*plane.type)) types.push_back(plane.type);
+  const PlaneType& alpha = plane_type("alpha");
+  const bool cuts =
+      std::any_of(outputs.planes.begin(), outputs.planes.end(),
+                  [](const PlaneOutput& plane) { return plane.encoding == PlaneEncoding::rgba8; });
+  if (cuts && outputs.find_plane(alpha.name) == nullptr) types.push_back(&alpha);
   return types;
+}
+
+bool is_cut_out(const OutputSettings& outputs, const OutputFile& output) {
+  const PlaneOutput* wanted = outputs.find_plane(output.kind);
+  return wanted != nullptr && wanted->encoding == PlaneEncoding::rgba8;
 }
 
 PixelCounts count_planes(const std::vector<Plane>& planes, const PlaneType& of) {
@@ -57,6 +67,14 @@ std::vector<std::byte> encode_output(const OutputSettings& outputs, const Output
   const PlaneOutput* wanted = outputs.find_plane(output.kind);
   DS_ASSERT(plane != nullptr && wanted != nullptr);
   return encode_plane(*plane, wanted->encoding);
+}
+
+std::vector<std::byte> encode_cut_out(const OutputFile& output, const std::vector<Plane>& planes,
+                                      const Film& film, const ToneMap& tone_map) {
+  const Plane* foreground = find(planes, *output.plane);
+  const Plane* alpha = find(planes, plane_type("alpha"));
+  DS_ASSERT(foreground != nullptr && alpha != nullptr);
+  return encode_png(cut_out(*foreground, *alpha, tone_map, tone_map_scale(film, tone_map)));
 }
 
 }  // namespace ds

@@ -188,19 +188,23 @@ class Rerender {
       if (light_.planes.empty())
         light_ = renderer_.trace_light(image_.spec, wanted_light_planes(recipe_.outputs), nullptr,
                                        {}, stop_);
-      return encode_output(recipe_.outputs, output, light_.planes);
+      if (!is_cut_out(recipe_.outputs, output))
+        return encode_output(recipe_.outputs, output, light_.planes);
+      return encode_cut_out(output, light_.planes, light_.film, tone_map());
     }
     if (output.plane == nullptr) {
       const Film film = renderer_.trace(image_.spec, nullptr, {}, stop_);
-      const ToneMap& tone_map =
-          tone_map_of(recipe_, inputs_.environment(image_.spec.environment_folder));
-      return encode_png(develop(film, tone_map, effects_of(image_.spec)).picture);
+      return encode_png(develop(film, tone_map(), effects_of(image_.spec)).picture);
     }
     if (planes_.empty()) planes_ = renderer_.trace_planes(image_.spec, planes_of(recipe_.outputs));
     return encode_output(recipe_.outputs, output, planes_);
   }
 
  private:
+  const ToneMap& tone_map() {
+    return tone_map_of(recipe_, inputs_.environment(image_.spec.environment_folder));
+  }
+
   const Recipe& recipe_;
   Inputs& inputs_;
   Renderer& renderer_;

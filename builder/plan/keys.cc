@@ -67,7 +67,8 @@ struct Environment {
   Hash128 part;
   std::string files;  ///< canonical_files
   std::map<unsigned, std::string> shapes;
-  TextForm picture;  ///< the picture's output
+  TextForm picture;      ///< the picture's output
+  std::string tone_map;  ///< canonical
   std::unordered_map<const void*, View> views;
   bool gain_changes_program = false;
 };
@@ -229,7 +230,8 @@ Environment& KeyMaker::State::environment_of(const ImageSpec& image) {
   made.files = canonical_files(recipe_.outputs, tone_map, facts);
   made.shapes = facts.shapes;
   made.gain_changes_program = facts.gain_changes_program;
-  made.picture = output_form("image", k_picture_format, canonical_tone_map(tone_map));
+  made.tone_map = canonical_tone_map(tone_map);
+  made.picture = output_form("image", k_picture_format, made.tone_map);
   return environments_.emplace(made.folder.identity(), std::move(made)).first->second;
 }
 
@@ -390,7 +392,11 @@ void KeyMaker::State::add_outputs(ImageKeys& keys, Hash128 colours, Environment&
     } else {
       const Hash128 traced =
           traced_plane(next, keys.parts, colours, environment, view, kind, image);
-      key = planes_[next++].output.hash({HexText(traced).text()});
+      TextForm& form = planes_[next++].output;
+      const HexText from(traced);
+      key = output.developed
+                ? hash_text(std::string(form.fill({from.text()})) + environment.tone_map)
+                : form.hash({from.text()});
     }
     texts.emplace_back(key);
     keys.outputs.push_back(

@@ -35,11 +35,11 @@ std::string lines_of_ids(std::string_view text) {
 
 std::vector<OutputKind> kinds_of(const OutputSettings& outputs) {
   std::vector<OutputKind> kinds;
-  if (outputs.image)
-    kinds.push_back({"image", std::string(k_picture_ending), k_picture_format, nullptr});
+  if (outputs.image) kinds.push_back({"image", std::string(k_picture_ending), k_picture_format});
   for (const PlaneOutput& plane : outputs.planes)
     kinds.push_back({plane.type->name, plane_ending(*plane.type, plane.encoding),
-                     format_of(plane.encoding), plane.type});
+                     format_of(plane.encoding), plane.type,
+                     plane.encoding == PlaneEncoding::rgba8});
   return kinds;
 }
 

@@ -16,6 +16,7 @@ struct OutputKind {
   std::string ending;                ///< ".png", ".mask.png"
   std::string_view format;           ///< in the keys: how it is encoded
   const PlaneType* plane = nullptr;  ///< none: the picture
+  bool developed = false;            ///< a plane of light that goes through the tone map
 };
 /// A change of the picture's encoder's settings changes it.
 inline constexpr std::string_view k_picture_format = "png 8 bit, zlib 6, version 1";

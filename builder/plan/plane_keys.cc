@@ -88,7 +88,8 @@ Hash128 plane_program(const PlaneType& plane, const std::string& of, const Recip
     if (const auto hash = Hash128::from_hex(*known)) return *hash;
   const SceneEffects effects =
       scene_effects(scene_without_model(recipe, inputs, image), image.camera);
-  const std::array alone{&plane};
+  std::vector alone{&plane};
+  if ((plane.traits & kernels::k_plane_cut_out) != 0) alone.push_back(&plane_type("alpha"));
   const Hash128 hash = hash_text(
       program_tokens(is_of_light(plane) ? path_program_text(with_light_planes(effects, alone))
                                         : planes_program_text(alone, effects)));

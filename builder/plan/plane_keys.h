@@ -36,7 +36,7 @@ TextForm plane_form(const WantedPlane& plane, const std::map<unsigned, std::stri
                     const ImageSpec& image, const EnvironmentChange& change,
                     const std::string& others = "");
 
-/// Hash of the tokens of the program that traces this plane alone in the image's scene, of which the
+/// Hash of the tokens of the program that traces this plane alone (with alpha, what is cut out by it) in the image's scene, of which the
 /// question `of` says all that the program depends on.
 Hash128 plane_program(const PlaneType& plane, const std::string& of, const Recipe& recipe,
                       Inputs& inputs, const ImageSpec& image);

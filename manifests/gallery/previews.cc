@@ -36,6 +36,8 @@ constexpr std::array k_looks = {
     LookOfKind{"indirect_diffuse", Look::light},
     LookOfKind{"indirect_glossy", Look::light},
     LookOfKind{"indirect_specular", Look::light},
+    LookOfKind{"alpha", Look::plain},
+    LookOfKind{"foreground", Look::light},
 };
 
 Look look_of(std::string_view kind) {

@@ -22,7 +22,7 @@ def read_png(path: pathlib.Path):
         at += 12 + size
     width, height, bits, colour, _, _, interlaced = header
     assert interlaced == 0 and bits in (8, 16)
-    channels = {0: 1, 2: 3}[colour]
+    channels = {0: 1, 2: 3, 6: 4}[colour]
     pixel = channels * bits // 8
     raw, rows, above = zlib.decompress(packed), [], bytes(width * pixel)
     for y in range(height):

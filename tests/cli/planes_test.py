@@ -148,6 +148,51 @@ class PlanesTest(TinyCase):
         verified = self.run_it("verify", self.recipe, "-o", self.out, "--rerender", 2, *wanted)
         self.assertEqual(verified.code, 0, verified)
 
+    def test_pictures_on_a_transparent_background(self):
+        linear = ["--set", "outputs.tone_map=linear", "--set", "outputs.tone_map_scale=0.5", "--set", "engine.spp=16"]
+        wanted = [*linear, *planes("ALPHA", "foreground", "emission")]
+        self.build(*wanted)
+        exact = {record["id"]: record for record in self.records()}
+        cut = self.folder / "cut"
+        only = [*linear, *planes("foreground:rgba8")]
+        run = self.run_it("build", self.recipe, "-o", cut, *only)
+        self.assertEqual(run.code, 0, run)
+        kinds = set()
+        for record in self.records(cut):
+            right = exact[record["id"]]
+            alpha, front, behind, picture = (self.values(right, kind)
+                                             for kind in ("alpha", "foreground", "emission", "image"))
+            self.assertEqual(picture, self.values(record, "image", cut))
+            for (a,), colour, sky, whole, found in zip(alpha, front, behind, picture,
+                                                       self.values(record, "foreground", cut)):
+                self.assertEqual(len(found), 4)
+                self.assertLessEqual(abs(a * 255 - found[3]), 0.51)
+                kinds.add(0 if a == 0 else 255 if a == 1 else 1)
+                for channel in range(3):
+                    # Over its own sky it is the picture, in linear light.
+                    both = colour[channel] + sky[channel]
+                    self.assertLessEqual(abs(min(1, both * 0.5) ** (1 / 2.2) * 255 - whole[channel]), 0.51)
+                    straight = colour[channel] / a if a > 0 else 0
+                    self.assertLessEqual(abs(min(1, straight * 0.5) ** (1 / 2.2) * 255 - found[channel]), 0.51)
+        self.assertEqual(kinds, {0, 1, 255})
+        told = json.loads((cut / "manifest/dataset.json").read_text())["planes"]["foreground"]
+        self.assertEqual(told["encoding"], "rgba8")
+        verified = self.run_it("verify", self.recipe, "-o", cut, "--rerender", 2, *only)
+        self.assertEqual(verified.code, 0, verified)
+        # It goes through the tone map; what is linear does not.
+        brighter = ["--set", "outputs.tone_map_scale=0.25"]
+        status = self.run_it("plan", self.recipe, "-o", cut, *only, *brighter, "--json").json
+        self.assertEqual(status["stale"], IMAGES, status)
+        self.run_it("build", self.recipe, "-o", cut, *only, *brighter)
+        self.run_it("build", self.recipe, "-o", self.out, *wanted, *brighter)
+        darker = {record["id"]: record for record in self.records()}
+        for record in self.records(cut):
+            self.assertNotEqual(record["files"], exact[record["id"]]["files"])
+            same = {file["kind"]: file["sha256"] for file in darker[record["id"]]["files"]}
+            was = {file["kind"]: file["sha256"] for file in exact[record["id"]]["files"]}
+            self.assertEqual(same["foreground"], was["foreground"])
+            self.assertNotEqual(same["image"], was["image"])
+
     def test_albedo_is_the_colour_of_the_materials(self):
         self.build(*planes("albedo", "mask", "object_id"))
         colours = {"red": (0.7, 0.1, 0.1), "green": (0.1, 0.6, 0.1)}

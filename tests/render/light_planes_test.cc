@@ -21,10 +21,11 @@ using pictures::Picture;
 
 constexpr double k_pi = std::numbers::pi;
 
+/// Those that add up to the picture.
 std::vector<const PlaneType*> all_types() {
   std::vector<const PlaneType*> types;
   for (const PlaneType& type : plane_types())
-    if (is_of_light(type)) types.push_back(&type);
+    if (is_of_light(type) && (type.traits & kernels::k_plane_beside) == 0) types.push_back(&type);
   return types;
 }
 
@@ -73,6 +74,79 @@ TEST(LightPlanes, AddUpToThePictureAndMoveNoBitOfIt) {
     for (const auto& [plane, mean] : means(traced))
       EXPECT_TRUE(mean.x > 0 || picture.name != "everything") << plane;
   }
+}
+
+std::vector<const PlaneType*> cut_types() {
+  return {&plane_type("alpha"), &plane_type("foreground"), &plane_type("emission")};
+}
+
+// What is covered by a matte of kd 1 in a white sky of 0.5 shines 0.5, with or without the sky behind; the
+// sky's own pixels have no foreground. A lens, so that edges are soft.
+TEST(LightPlanes, AlphaAndForegroundLeaveOutWhatIsInfinitelyFar) {
+  Picture picture;
+  picture.camera.position = {0, 0, 3};
+  picture.camera.fov_deg = 30;
+  picture.camera.lens_radius_m = 0.05;
+  picture.camera.focus_distance_m = 2;
+  picture.engine.width = picture.engine.height = 32;
+  picture.engine.spp = 64;
+  picture.engine.seed = pictures::wide_seed(11);
+  picture.engine.roulette_depth = 255;
+  const int white = pictures::add_material(picture.scene, "matte");
+  pictures::set_input(picture.scene, white, "kd", {1, 1, 1});
+  pictures::add_object(picture.scene, pictures::quad({0, 0, 0}, {0.4f, 0, 0}, {0, 0.4f, 0}), white);
+  picture.scene.lights = {pictures::constant_light({0.5f, 0.5f, 0.5f})};
+  const LitPlanes traced = trace_light(picture, cut_types());
+  EXPECT_EQ(pictures::film_hash(traced.film), pictures::film_hash(pictures::trace(picture)));
+  const std::vector<float>& alpha = traced.planes[0].values;
+  const std::vector<float>& foreground = traced.planes[1].values;
+  const std::vector<float>& emission = traced.planes[2].values;
+  ASSERT_EQ(alpha.size(), 32u * 32u);
+  ASSERT_EQ(foreground.size(), 3 * alpha.size());
+  int whole = 0, none = 0, between = 0;
+  for (std::size_t i = 0; i < alpha.size(); ++i) {
+    ASSERT_GE(alpha[i], 0.0f);
+    ASSERT_LE(alpha[i], 1.0f + 1e-6f);
+    // One quad scatters light away from itself once, so all that covers shines as the sky does.
+    EXPECT_NEAR(foreground[3 * i], 0.5f * alpha[i], 1e-5f) << i;
+    EXPECT_NEAR(emission[3 * i], 0.5f * (1 - alpha[i]), 1e-5f) << i;
+    (alpha[i] > 1 - 1e-5f ? whole : alpha[i] < 1e-5f ? none : between) += 1;
+  }
+  EXPECT_EQ(alpha[16 * 32 + 16], 1.0f);
+  // The quad is 0.8 wide 3 in front of a field 1.61 wide: 0.247 of it.
+  double mean = 0;
+  for (const float one : alpha)
+    mean += double{one} / static_cast<double>(alpha.size());
+  EXPECT_NEAR(mean, 0.64 / (4 * 9 * 0.0717968), 0.01);
+  EXPECT_GT(whole, 100);
+  EXPECT_GT(none, 500);
+  EXPECT_GT(between, 40);
+}
+
+// Over what was left out there stands the picture, whatever is in it; a lamp that the camera sees covers.
+TEST(LightPlanes, ForegroundAndTheSkyBehindAreThePicture) {
+  for (Picture picture : pictures::all_effects()) {
+    const LitPlanes traced = trace_light(picture, cut_types());
+    EXPECT_EQ(pictures::film_hash(traced.film), pictures::film_hash(pictures::trace(picture)))
+        << picture.name;
+    for (std::size_t i = 0; i < traced.film.rgb.size(); ++i) {
+      const double whole = double{traced.film.rgb[i]}, front = double{traced.planes[1].values[i]};
+      ASSERT_LE(front, whole * (1 + 2e-6) + 1e-30) << picture.name << " " << i;
+      ASSERT_GE(front + double{traced.planes[2].values[i]}, whole * (1 - 2e-6)) << picture.name;
+      if (traced.planes[0].values[i / 3] == 0.0f) {
+        ASSERT_EQ(front, 0.0) << picture.name << " " << i;
+      }
+    }
+  }
+}
+
+TEST(LightPlanes, AlphaIsOfWholeSamplesWhereTheirLightIsScaledDown) {
+  Picture picture = pictures::all_effects().front();
+  const LitPlanes plain = trace_light(picture, cut_types());
+  picture.engine.outlier_limit = 0.1f;
+  const LitPlanes scaled = trace_light(picture, cut_types());
+  EXPECT_GT(scaled.film.facts.outlier_samples, 100u);
+  EXPECT_EQ(plain.planes[0].values, scaled.planes[0].values);
 }
 
 TEST(LightPlanes, AddUpWhereSamplesAreScaledDownAndTilesHaveTheirOwnNumbers) {

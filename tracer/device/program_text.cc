@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/device/program_text.h"
 
+#include "tracer/device/plane_types.h"
 #include "tracer/device/program_assembly.h"
 #include "tracer/kernels/layout.h"
 #include "tracer/scene/type_tables.h"
@@ -47,9 +48,14 @@ std::string input_definition(const SceneEffects& effects) {
 
 std::string light_plane_list(const SceneEffects& effects) {
   if (effects.light_planes.empty()) return "";
-  return "#define DS_HOOK_LIGHT_PLANES\n" +
-         list_definition("DS_LIGHT_PLANES", effects.light_planes, effects.light_planes) +
-         fmt::format("#define DS_LIGHT_PLANE_COUNT {}\n", effects.light_planes.size());
+  std::vector<std::string> covering;
+  for (const std::string& name : effects.light_planes)
+    if ((plane_type(name).traits & kernels::k_plane_coverage) != 0) covering.push_back(name);
+  std::string text = "#define DS_HOOK_LIGHT_PLANES\n" +
+                     list_definition("DS_LIGHT_PLANES", effects.light_planes, effects.light_planes);
+  if (!covering.empty())
+    text += list_definition("DS_COVERAGE_PLANES", covering, effects.light_planes);
+  return text + fmt::format("#define DS_LIGHT_PLANE_COUNT {}\n", effects.light_planes.size());
 }
 
 std::string chooser_list(const SceneEffects& effects) {

@@ -18,6 +18,7 @@ typedef struct {
   real3 diffuse;        ///< else: what share of it the first one's diffuse lobes sent on, the rest
       ///< being of glossy lobes. It depends on the direction alone, not on how that
       ///< was sampled
+  mask beyond;  ///< the camera looks right into what lies infinitely far
 } Contribution;
 
 /// Light that the first surface gets right from what shines, but for that in a mirror or through

@@ -87,6 +87,7 @@ DS_FN void start_paths(Paths* paths, mask start, const Pixels* pixels, const Vie
   clear_light(&paths->planes, start);
   paths->met.scatterings = paths->vertices;
   paths->met.specular = paths->met.specular & !start;
+  paths->met.beyond = paths->met.beyond & !start;
   paths->met.diffuse = choose(start, splat(zero), paths->met.diffuse);
 #endif
 }

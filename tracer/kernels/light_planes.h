@@ -21,6 +21,15 @@ DS_FN void contribute(PlaneLight* planes, mask here, const Contribution* c, real
   DS_LIGHT_PLANES(DS_TAKE)
 }
 
+#ifdef DS_COVERAGE_PLANES
+/// The camera's rays meet something.
+DS_FN void cover(PlaneLight* planes, mask here) {
+#  define DS_COVER(name, number) \
+    planes->plane[number] = choose(here, splat((real)(1.0f)), planes->plane[number]);
+  DS_COVERAGE_PLANES(DS_COVER)
+}
+#endif
+
 DS_FN void copy_light(PlaneLight* to, mask here, const PlaneLight* from) {
   for (int i = 0; i < DS_LIGHT_PLANE_COUNT; ++i)
     to->plane[i] = choose(here, from->plane[i], to->plane[i]);
@@ -61,11 +70,18 @@ DS_FN void change_light_sums(LightSums* sums, int lane, size_t last, size_t next
 /// 0 where they were not.
 DS_FN void add_light(LightSums* sums, mask done, natural quarter, real accepted,
                      const PlaneLight* light) {
+  real parts[DS_LIGHT_PLANE_COUNT];
+  for (uint i = 0; i < (uint)DS_LIGHT_PLANE_COUNT; ++i)
+    parts[i] = accepted;
+#ifdef DS_COVERAGE_PLANES
+#  define DS_WHOLE(name, number) parts[number] = (real)(1.0f);
+  DS_COVERAGE_PLANES(DS_WHOLE)
+#endif
   for (uint q = 0; q < 4u; ++q) {
     const mask here = done & (quarter == q) & (accepted > 0.0f);
     if (!any_lane(here)) continue;
     for (uint i = 0; i < (uint)DS_LIGHT_PLANE_COUNT; ++i) {
-      const real3 rgb = choose(here, scale(light->plane[i], accepted), splat((real)(0.0f)));
+      const real3 rgb = choose(here, scale(light->plane[i], parts[i]), splat((real)(0.0f)));
       const real sample[3] = {rgb.x, rgb.y, rgb.z};
       const uint first = i * (uint)k_light_plane + q * (uint)k_light_quarter;
       for (uint c = 0; c < 3u; ++c)

@@ -51,6 +51,7 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
     paths->radiance =
         choose(escapes, add(paths->radiance, mul(paths->throughput, sky)), paths->radiance);
 #  ifdef DS_HOOK_LIGHT_PLANES
+    paths->met.beyond = escapes & (paths->met.scatterings == 0u);
     contribute(&paths->planes, escapes, &paths->met, mul(paths->throughput, sky));
 #  endif
   }
@@ -73,6 +74,9 @@ DS_FN StepEnds advance(Paths* paths, Sums* sums, const Pixels* pixels, const Sce
   paths->origin = choose(passes, behind, paths->origin);
   hit = hit & !passes;
   if (!any_lane(hit)) return ends;
+#endif
+#ifdef DS_COVERAGE_PLANES
+  cover(&paths->planes, hit & (paths->met.scatterings == 0u));
 #endif
 #ifdef DS_MESH_LIGHTS
 #  ifdef DS_HOOK_LIGHT_PLANES
@@ -144,6 +148,7 @@ DS_OUT_OF_LINE void trace_pixels(PixelQueue* queue, const __global SceneData* re
 #ifdef DS_HOOK_LIGHT_PLANES
   clear_light_sums(&sums.light, light_film);
   paths.met.specular = paths.asked.specular = (mask)(0);
+  paths.met.beyond = paths.asked.beyond = (mask)(0);
   paths.met.scatterings = paths.asked.scatterings = (natural)(0u);
   paths.met.diffuse = paths.asked.diffuse = splat((real)(0.0f));
   clear_light(&paths.planes, (mask)(-1));

@@ -14,6 +14,10 @@ enum {
   k_plane_materials =
       4096,              ///< HitPoint::albedo: materials, textures and what of meshes these read
   k_plane_light = 8192,  ///< the picture's paths: contribution.h, not plane.h
+  // Of light, it is ...
+  k_plane_beside = 16384,    ///< none of those that add up to the picture
+  k_plane_coverage = 32768,  ///< 1 for each sample whose ray meets something
+  k_plane_cut_out = 65536,   ///< to be had as PNG with alpha, through the tone map
   // Its numbers are ...
   k_plane_words = 64,        ///< natural numbers, by their bits
   k_plane_exr = 128,         ///< to be had as EXR, of floats or halves

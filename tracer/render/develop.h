@@ -13,7 +13,7 @@
 
 namespace ds {
 
-/// 8-bit picture, row 0 at the top. `channels` is 1 or 3.
+/// 8-bit picture, row 0 at the top. `channels` is 1, 3 or 4: the last is straight alpha.
 struct BytePicture {
   int width = 0, height = 0, channels = 3;
   std::vector<std::uint8_t> pixels;

@@ -227,9 +227,10 @@ DecodedImage decode_bytes(std::span<const std::byte> bytes, const std::string& f
 
 std::vector<std::byte> png_of(int width, int height, int channels, const OIIO::TypeDesc& type,
                               std::span<const std::byte> pixels) {
-  DS_ASSERT(channels == 1 || channels == 3);
+  DS_ASSERT(channels == 1 || channels == 3 || channels == 4);
   OIIO::ImageSpec spec(width, height, channels, type);
   DS_ASSERT(pixels.size() == spec.image_bytes());
+  if (channels == 4) spec.attribute("oiio:UnassociatedAlpha", 1);
   spec.attribute("png:compressionLevel", 6);
   spec.attribute("png:filter",
                  0x80);  // libpng's PNG_FILTER_PAETH on every row: its choice by trial may change

@@ -29,18 +29,20 @@ void take_sums(FilmSums& film, std::span<const float> words, std::size_t planes,
       }
 }
 
-std::vector<float> pixels_of(const FilmSums& film, const PixelFilter& filter) {
+/// The first `width` numbers of each pixel.
+std::vector<float> pixels_of(const FilmSums& film, const PixelFilter& filter, int width) {
   const auto w = static_cast<std::size_t>(film.width), h = static_cast<std::size_t>(film.height);
-  std::vector<float> rgb(w * h * 3);
+  const auto numbers = static_cast<std::size_t>(width);
+  std::vector<float> values(w * h * numbers);
   constexpr std::size_t band = 16;  // rows at a time
   parallel_ranges((h + band - 1) / band, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin * band; y < std::min(end * band, h); y += band) {
-      auto to = rgb.begin() + static_cast<std::ptrdiff_t>(y * w * 3);
+      auto to = values.begin() + static_cast<std::ptrdiff_t>(y * w * numbers);
       for (const PixelEstimate& pixel : filtered(film, filter, {0, y, w, std::min(y + band, h)}))
-        to = std::copy(pixel.mean.begin(), pixel.mean.end(), to);
+        to = std::copy_n(pixel.mean.begin(), numbers, to);
     }
   });
-  return rgb;
+  return values;
 }
 
 }  // namespace
@@ -56,7 +58,8 @@ std::vector<Plane> light_planes_of(const std::vector<const PlaneType*>& types,
   std::vector<Plane> planes;
   for (std::size_t i = 0; i < types.size(); ++i) {
     take_sums(picture, words, types.size(), i);
-    planes.push_back({types[i], picture.width, picture.height, pixels_of(picture, filter)});
+    planes.push_back(
+        {types[i], picture.width, picture.height, pixels_of(picture, filter, types[i]->width)});
   }
   return planes;
 }

@@ -21,7 +21,8 @@ constexpr std::array k_rows = {
     Row{PlaneEncoding::png8, "png8", ".png", "png 8 bit, zlib 6, version 1"},
     Row{PlaneEncoding::png16, "png16", ".png", "png 16 bit, zlib 6, version 1"},
     Row{PlaneEncoding::half, "half", ".exr", "exr half, zip, version 2"},
-    Row{PlaneEncoding::exr, "exr", ".exr", "exr float, zip, version 2"}};
+    Row{PlaneEncoding::exr, "exr", ".exr", "exr float, zip, version 2"},
+    Row{PlaneEncoding::rgba8, "rgba8", ".png", "png 8 bit rgba, tone map, zlib 6, version 1"}};
 
 const Row& row_of(PlaneEncoding encoding) {
   return *std::find_if(k_rows.begin(), k_rows.end(),
@@ -102,6 +103,7 @@ std::vector<PlaneEncoding> encodings_of(const PlaneType& type) {
     encodings.push_back(PlaneEncoding::png16);
   if (has(type, kernels::k_plane_png_signed | kernels::k_plane_png_words))
     encodings.push_back(PlaneEncoding::png8);
+  if (has(type, kernels::k_plane_cut_out)) encodings.push_back(PlaneEncoding::rgba8);
   return encodings;
 }
 
@@ -118,6 +120,28 @@ std::vector<std::byte> encode_plane(const Plane& plane, PlaneEncoding encoding) 
   for (const std::uint16_t value : deep.pixels)
     picture.pixels.push_back(static_cast<std::uint8_t>(value));
   return encode_png(picture);
+}
+
+BytePicture cut_out(const Plane& foreground, const Plane& alpha, const ToneMap& tone_map,
+                    double scale) {
+  DS_ASSERT(foreground.values.size() == 3 * alpha.values.size());
+  Film film;
+  film.width = foreground.width;
+  film.height = foreground.height;
+  film.rgb = foreground.values;
+  for (std::size_t i = 0; i < alpha.values.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      film.rgb[3 * i + c] = alpha.values[i] > 0 ? film.rgb[3 * i + c] / alpha.values[i] : 0.0f;
+  const BytePicture opaque = develop_at(film, tone_map, scale);
+  BytePicture picture{foreground.width, foreground.height, 4, {}};
+  picture.pixels.reserve(4 * alpha.values.size());
+  for (std::size_t i = 0; i < alpha.values.size(); ++i) {
+    const auto rgb = opaque.pixels.begin() + static_cast<std::ptrdiff_t>(3 * i);
+    picture.pixels.insert(picture.pixels.end(), rgb, rgb + 3);
+    const double share = std::clamp(double{alpha.values[i]}, 0.0, 1.0);
+    picture.pixels.push_back(static_cast<std::uint8_t>(std::floor(share * 255 + 0.5)));
+  }
+  return picture;
 }
 
 }  // namespace ds

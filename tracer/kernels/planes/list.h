@@ -20,4 +20,6 @@
   X(direct_glossy)       \
   X(indirect_diffuse)    \
   X(indirect_glossy)     \
-  X(indirect_specular)
+  X(indirect_specular)   \
+  X(alpha)               \
+  X(foreground)
