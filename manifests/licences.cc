@@ -2,7 +2,10 @@
 #include "manifests/licences.h"
 
 #include <algorithm>
+#include <initializer_list>
+#include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 
 namespace ds {
@@ -55,6 +58,29 @@ std::string plain_words(std::string_view text) {
   return words;
 }
 
+std::string in_lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
+/// What stands behind one of the words, from a . - or _ on, less an ending of a text; nothing where none of
+/// the words begins the name.
+std::optional<std::string> behind_word(std::string_view name,
+                                       std::initializer_list<std::string_view> words) {
+  const std::string lower = in_lower_case(name);
+  for (const std::string_view word : words) {
+    if (!lower.starts_with(word)) continue;
+    std::string rest = lower.substr(word.size());
+    if (!rest.empty() && std::string_view(".-_").find(rest[0]) == std::string_view::npos) continue;
+    for (const char* ending : {".txt", ".md", ".rst", ".markdown", ".text"})
+      if (rest.ends_with(ending)) return rest.substr(0, rest.rfind('.'));
+    return rest;
+  }
+  return std::nullopt;
+}
+
 /// What stands behind "SPDX-License-Identifier:" on its line; "" where there is none.
 std::string stated_id(std::string_view text) {
   constexpr std::string_view k_tag = "SPDX-License-Identifier:";
@@ -80,6 +106,31 @@ std::string spdx_id(std::string_view text) {
     found = known.id;
   }
   return std::string(found);
+}
+
+bool is_licence_name(std::string_view name) {
+  const auto rest = behind_word(
+      name, {"licenses", "licences", "license", "licence", "copying", "unlicense", "unlicence"});
+  if (!rest) return false;
+  const std::string_view last =
+      std::string_view(*rest).substr(std::min(rest->rfind('.'), rest->size()));
+  // An ending of letters alone is a file format's, but for what licences are called.
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (last.empty() || std::any_of(last.begin(), last.end(), is_digit)) return true;
+  constexpr std::string_view k_known_endings[] = {".lesser", ".mit",  ".bsd",  ".apache",
+                                                  ".gpl",    ".lgpl", ".cc-by"};
+  return std::find(std::begin(k_known_endings), std::end(k_known_endings), last) !=
+         std::end(k_known_endings);
+}
+
+bool is_licence_folder_name(std::string_view name) {
+  const std::string lower = in_lower_case(name);
+  return lower == "licenses" || lower == "licences";
+}
+
+bool is_source_name(std::string_view name) {
+  const auto rest = behind_word(name, {"sources", "source"});
+  return rest && rest->empty();
 }
 
 std::vector<LicenceRecord> group_licences(

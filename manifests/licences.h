@@ -23,6 +23,16 @@ struct LicenceRecord {
 /// GPL's: "only" or "or later").
 std::string spdx_id(std::string_view text);
 
+/// Whether a file of that name beside assets is their licence: LICENSE, LICENCE, COPYING or UNLICENSE, in any case,
+/// with an ending of a text (.txt, .md, .rst) or without, and with a licence's name between, as LICENSE-MIT,
+/// LICENSE.CC-BY-4.0 and COPYING.LESSER. A model is none: license-plate.off.
+bool is_licence_name(std::string_view name);
+/// Whether a folder of that name beside assets holds their licences, a file each: LICENSES or LICENCES, in any
+/// case, as REUSE has it.
+bool is_licence_folder_name(std::string_view name);
+/// SOURCE or SOURCES, in any case, likewise with an ending of a text or without.
+bool is_source_name(std::string_view name);
+
 /// Pairs of asset and text as records: each text once, sorted by their first asset.
 std::vector<LicenceRecord> group_licences(
     const std::vector<std::pair<std::string, std::string>>& texts);

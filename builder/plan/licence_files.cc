@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/licence_files.h"
 
+#include "manifests/licences.h"
 #include "tracer/base/error.h"
 #include "tracer/base/files.h"
 #include "tracer/base/log.h"
@@ -24,17 +25,13 @@ using Texts = std::vector<std::pair<std::string, std::string>>;
 /// A kind of text that stands beside assets.
 struct AssetText {
   const char* what;  ///< "licence"
-  std::vector<const char*> names;
+  const char* name;  ///< the most usual of its files' names
+  bool (*is_name)(std::string_view file);
+  bool (*is_folder_name)(std::string_view folder);  ///< of such files
 };
-const AssetText& licence_kind() {
-  static const AssetText kind{"licence",
-                              {"LICENSE", "LICENCE", "LICENSE.txt", "LICENCE.txt", "COPYING"}};
-  return kind;
-}
-const AssetText& source_kind() {
-  static const AssetText kind{"source", {"SOURCE", "SOURCE.txt"}};
-  return kind;
-}
+constexpr AssetText k_licence{"licence", "LICENSE", is_licence_name, is_licence_folder_name};
+constexpr AssetText k_source{"source", "SOURCE", is_source_name,
+                             [](std::string_view) { return false; }};
 
 /// The kind of asset that is a folder.
 constexpr std::string_view k_environments = "environments";
@@ -53,28 +50,55 @@ std::optional<std::string> read_text(const AssetText& kind, const fs::path& file
   return std::nullopt;
 }
 
-/// Beside the asset or one folder up; an asset that is a folder may hold its own.
-std::optional<std::string> text_near(const AssetText& kind, const fs::path& folder, bool is_asset) {
+struct FolderTexts {
+  bool any = false;  ///< though none may be a text
+  std::vector<std::string> texts;
+};
+/// One look a folder: there may be thousands of models in it, or of folders beside each other.
+using KnownFolders = std::map<fs::path, FolderTexts>;
+
+void add_texts(const AssetText& kind, const fs::path& folder, bool all, FolderTexts& found) {
+  std::vector<fs::path> files, folders;
   std::error_code error;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    const std::string name = at->path().filename().string();
+    std::error_code ignored;
+    if (fs::is_regular_file(at->path(), ignored) &&
+        (all ? !name.starts_with('.') : kind.is_name(name)))
+      files.push_back(at->path());
+    else if (!all && kind.is_folder_name(name) && fs::is_directory(at->path(), ignored))
+      folders.push_back(at->path());
+  }
+  std::sort(files.begin(), files.end());
+  found.any = found.any || !files.empty();
+  for (const fs::path& file : files)
+    if (std::optional<std::string> text = read_text(kind, file))
+      found.texts.push_back(*std::move(text));
+  for (const fs::path& inside : folders)
+    add_texts(kind, inside, true, found);
+}
+
+/// Beside the asset or one folder up; an asset that is a folder may hold its own.
+std::vector<std::string> texts_near(const AssetText& kind, const fs::path& folder, bool is_asset,
+                                    KnownFolders& known) {
   std::vector<fs::path> places{folder, folder.parent_path()};
   if (is_asset) places.push_back(places.back().parent_path());
-  for (const fs::path& place : places)
-    for (const char* name : kind.names)
-      if (fs::is_regular_file(place / name, error)) return read_text(kind, place / name);
-  return std::nullopt;
+  for (const fs::path& place : places) {
+    const auto [at, is_new] = known.try_emplace(place);
+    if (is_new) add_texts(kind, place, false, at->second);
+    if (at->second.any) return at->second.texts;
+  }
+  return {};
 }
 
 Texts texts_beside(const AssetText& text, const std::string& kind, const NamedAssets& assets) {
-  // One look a folder: there may be thousands of models.
-  std::map<fs::path, std::optional<std::string>> known;
+  KnownFolders known;
   Texts texts;
   const bool is_folder = kind == k_environments;
-  for (const auto& [name, asset] : assets) {
-    const fs::path folder = is_folder ? asset : asset.parent_path();
-    const auto [entry, is_new] = known.try_emplace(folder);
-    if (is_new) entry->second = text_near(text, folder, is_folder);
-    if (entry->second) texts.emplace_back(fmt::format("{}/{}", kind, name), *entry->second);
-  }
+  for (const auto& [name, asset] : assets)
+    for (const std::string& found :
+         texts_near(text, is_folder ? asset : asset.parent_path(), is_folder, known))
+      texts.emplace_back(fmt::format("{}/{}", kind, name), found);
   return texts;
 }
 
@@ -97,19 +121,19 @@ void require(const AssetText& text, std::string_view key, const Recipe& recipe) 
        "put a {} file into their folder or the one above",
        recipe.file.string(), key, text.what, fmt::join(without.begin(), shown, ", "),
        without.size() > k_shown ? fmt::format(" and {} more", without.size() - k_shown) : "",
-       text.names.front());
+       text.name);
 }
 
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> licences_beside(const std::string& kind,
                                                                  const NamedAssets& assets) {
-  return texts_beside(licence_kind(), kind, assets);
+  return texts_beside(k_licence, kind, assets);
 }
 
 std::vector<std::pair<std::string, std::string>> sources_beside(const std::string& kind,
                                                                 const NamedAssets& assets) {
-  return texts_beside(source_kind(), kind, assets);
+  return texts_beside(k_source, kind, assets);
 }
 
 std::vector<std::pair<std::string, NamedAssets>> licensed_assets(const Recipe& recipe) {
@@ -131,8 +155,8 @@ std::vector<std::pair<std::string, NamedAssets>> licensed_assets(const Recipe& r
 }
 
 void check_licensed(const Recipe& recipe) {
-  if (recipe.refuses_unlicensed) require(licence_kind(), "dataset.unlicensed", recipe);
-  if (recipe.refuses_unsourced) require(source_kind(), "dataset.unsourced", recipe);
+  if (recipe.refuses_unlicensed) require(k_licence, "dataset.unlicensed", recipe);
+  if (recipe.refuses_unsourced) require(k_source, "dataset.unsourced", recipe);
 }
 
 }  // namespace ds

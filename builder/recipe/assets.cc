@@ -3,6 +3,7 @@
 
 #include "builder/recipe/recipe.h"
 #include "manifests/json_text.h"
+#include "manifests/licences.h"
 #include "tracer/base/file_names.h"
 #include "tracer/base/log.h"
 #include "tracer/base/nearest.h"
@@ -100,9 +101,9 @@ bool is_remark(const fs::path& path) {
   std::string name = file_name(path);
   std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return name.starts_with("LICENSE") || name.starts_with("LICENCE") ||
-         name.starts_with("COPYING") || name.starts_with("NOTICE") || name == "SOURCE" ||
-         name == "SOURCE.TXT" || name.starts_with("README") || name.ends_with(".CLA");
+  return is_licence_folder_name(file_name(path.parent_path())) || is_licence_name(name) ||
+         is_source_name(name) || name.starts_with("NOTICE") || name.starts_with("README") ||
+         name.ends_with(".CLA");
 }
 
 /// Looks into a folder, in the order of names, and with `recursive` into those in it, links

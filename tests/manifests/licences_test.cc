@@ -10,6 +10,25 @@
 namespace ds {
 namespace {
 
+TEST(LicenceNames, AreTheUsualOnesInAnyCase) {
+  for (const char* name :
+       {"LICENSE", "LICENCE", "License.md", "licence.txt", "COPYING", "copying.txt", "UNLICENSE",
+        "LICENSE-MIT", "LICENSE_CC0.txt", "LICENSE-CC-BY-4.0", "LICENSE.CC-BY-4.0",
+        "COPYING.LESSER", "LICENSE.rst", "LICENSES.md", "LICENSE.MIT"})
+    EXPECT_TRUE(is_licence_name(name)) << name;
+  for (const char* name :
+       {"license-plate.off", "LICENSE.obj", "licensed.txt", "copyingmachine.ply", "license.pdf",
+        "README.md", "NOTICE", "my-license.txt", "licensee", "license_plate.glb", ""})
+    EXPECT_FALSE(is_licence_name(name)) << name;
+  EXPECT_TRUE(is_licence_folder_name("LICENSES"));
+  EXPECT_TRUE(is_licence_folder_name("licences"));
+  EXPECT_FALSE(is_licence_folder_name("license"));
+  for (const char* name : {"SOURCE", "Source.md", "sources.txt"})
+    EXPECT_TRUE(is_source_name(name)) << name;
+  for (const char* name : {"source.off", "source-code.txt", "resource"})
+    EXPECT_FALSE(is_source_name(name)) << name;
+}
+
 TEST(SpdxId, IsThatOfTheKnownTexts) {
   EXPECT_EQ(spdx_id(read_text_file(std::filesystem::path(DS_SOURCE_DIR) / "assets/LICENSE")),
             "CC0-1.0");
