@@ -6,6 +6,7 @@
 #include "tracer/kernels/layout.h"
 #include "tracer/scene/scene_reads.h"
 #include "tracer/scene/sdl.h"
+#include "tracer/scene/sdl_warn.h"
 #include "tracer/scene/vary.h"
 
 #include <fmt/format.h>
@@ -129,7 +130,8 @@ EnvironmentFacts facts_of(const Scene& environment, const std::string& nodes) {
           largest_object_id,
           largest_material_id(environment),
           gain_changes_program(environment),
-          nodes};
+          nodes,
+          !gives_light(environment)};
 }
 
 std::string to_text(const EnvironmentFacts& facts, const std::vector<SourceFile>& files) {
@@ -148,7 +150,8 @@ std::string to_text(const EnvironmentFacts& facts, const std::vector<SourceFile>
                 {"largest_object_id", facts.largest_object_id},
                 {"largest_material_id", facts.largest_material_id},
                 {"gain_changes_program", facts.gain_changes_program},
-                {"nodes", facts.nodes}}
+                {"nodes", facts.nodes},
+                {"dark", facts.dark}}
         .dump();
   } catch (const json::exception&) {  // a name that is no UTF-8
     return "";
@@ -170,7 +173,8 @@ std::optional<EnvironmentFacts> facts_from_text(const std::string& text) {
                             object.at("largest_object_id").get<std::uint32_t>(),
                             object.at("largest_material_id").get<std::uint32_t>(),
                             object.at("gain_changes_program").get<bool>(),
-                            object.at("nodes").get<std::string>()};
+                            object.at("nodes").get<std::string>(),
+                            object.at("dark").get<bool>()};
   } catch (const json::exception&) {
     return std::nullopt;
   } catch (const Error&) {  // a file that cannot be looked at: reading it says why

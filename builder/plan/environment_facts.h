@@ -27,6 +27,7 @@ struct EnvironmentFacts {
   std::uint32_t largest_object_id = 0, largest_material_id = 0;
   bool gain_changes_program = false;  ///< see vary.h
   std::string nodes;                  ///< EnvironmentSource::nodes
+  bool dark = false;                  ///< nothing in it gives light
 };
 
 /// What of an object a plane reads beside its places: its traits of kernels/plane_traits.h that say

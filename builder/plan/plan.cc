@@ -393,7 +393,7 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard, Wanted
   }
   std::vector<std::string> unlikely;
   plan.concerns = {count_unphysical(plan.images, inputs),
-                   count_unlikely_assets(plan.images, inputs),
+                   count_unlikely_assets(dataset.recipe, plan.images, inputs),
                    find_unlikely_sizes(dataset.recipe, plan.images, inputs, unlikely),
                    count_names_by_case(plan.images),
                    count_damaged(plan.images, inputs),

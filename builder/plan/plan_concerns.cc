@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/plan/plan_concerns.h"
 
+#include "tracer/base/log.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +28,7 @@ std::string in_lower_case(std::string text) {
 /// Counts the files of which these are true; what was found was said when they were read.
 Concern count_assets(const char* name, const std::vector<PlannedImage>& images, Inputs& inputs,
                      const std::function<bool(const Scene& material)>& of_material,
-                     bool EnvironmentFacts::*of_environment) {
+                     const std::function<bool(const fs::path& folder)>& of_environment) {
   Concern concern{name, 0, 0, {}};
   std::set<const void*> seen;  // the files' paths are long, and images many
   std::set<std::string> files;
@@ -39,8 +41,7 @@ Concern count_assets(const char* name, const std::vector<PlannedImage>& images, 
     if (image.error) continue;
     const ImageSpec& spec = image.spec;
     look(spec.material_file, [&] { return of_material(inputs.material(spec)); });
-    look(spec.environment_folder,
-         [&] { return inputs.environment_facts(spec.environment_folder).*of_environment; });
+    look(spec.environment_folder, [&] { return of_environment(spec.environment_folder); });
   }
   return concern;
 }
@@ -75,14 +76,21 @@ Concern count_damaged(const std::vector<PlannedImage>& images, Inputs& inputs) {
 }
 
 Concern count_unphysical(const std::vector<PlannedImage>& images, Inputs& inputs) {
-  return count_assets("assets_unphysical", images, inputs, is_unphysical,
-                      &EnvironmentFacts::unphysical);
+  return count_assets(
+      "assets_unphysical", images, inputs, is_unphysical,
+      [&](const fs::path& folder) { return inputs.environment_facts(folder).unphysical; });
 }
 
-Concern count_unlikely_assets(const std::vector<PlannedImage>& images, Inputs& inputs) {
+Concern count_unlikely_assets(const Recipe& recipe, const std::vector<PlannedImage>& images,
+                              Inputs& inputs) {
   return count_assets(
       "assets_unlikely", images, inputs, [](const Scene& material) { return material.unlikely; },
-      &EnvironmentFacts::unlikely);
+      [&](const fs::path& folder) {
+        const EnvironmentFacts& facts = inputs.environment_facts(folder);
+        const bool dark = facts.dark && recipe.lights.empty();
+        if (dark) warn(fmt::format("{}: nothing in it gives light", folder.string()));
+        return facts.unlikely || dark;
+      });
 }
 
 Concern count_names_by_case(const std::vector<PlannedImage>& images) {

@@ -13,8 +13,9 @@ namespace ds {
 Concern count_damaged(const std::vector<PlannedImage>& images, Inputs& inputs);
 /// Counts the files, whose findings were said when they were read.
 Concern count_unphysical(const std::vector<PlannedImage>& images, Inputs& inputs);
-/// Likewise, of what is hardly meant.
-Concern count_unlikely_assets(const std::vector<PlannedImage>& images, Inputs& inputs);
+/// Likewise, of what is hardly meant; warns of environments without any light, where the recipe has none either.
+Concern count_unlikely_assets(const Recipe& recipe, const std::vector<PlannedImage>& images,
+                              Inputs& inputs);
 /// Counts the images whose files another's would replace where case does not count.
 Concern count_names_by_case(const std::vector<PlannedImage>& images);
 /// Images that show fewer distractors than were drawn.

@@ -2,6 +2,7 @@
 """Lights of a recipe: what they shed on a floor, by the inverse square law and what the manifest says was drawn."""
 import json
 import math
+import shutil
 
 from harness import IMAGES, main
 from lit_floor import LitFloorCase, dot, from_point, passes_model, scaled
@@ -101,6 +102,20 @@ class LightsTest(LitFloorCase):
         self.assertIn("lights[0].dir: wanted a sun above the horizon", run.err)
         self.assertTrue(0 < run.json["failed"] < IMAGES, run)
         self.assertEqual(run.json["failed"] + run.json["built"], IMAGES)
+
+    def test_a_dark_environment_is_no_fault_beside_lights(self):
+        shutil.copytree(self.tiny / "environments/floor", self.tiny / "environments/dark")
+        floor = (self.tiny / "environments/floor/environment.scn").read_text()
+        lines = [line for line in floor.splitlines() if not line.startswith("scene.lights.") and ".emission" not in line]
+        (self.tiny / "environments/dark/environment.scn").write_text("\n".join(lines) + "\n")
+        dark = ["--set", f'environments.files=["{self.tiny / "environments/dark"}"]']
+        for verb in (["plan"], ["build"]):
+            run = self.run_it(*verb, self.recipe, "-o", self.out, "--json", *dark)
+            self.assertNotIn("gives light", run.err)
+            self.assertEqual((run.code, run.json["concerns"]["assets_unlikely"]), (0, 0), run)
+            run = self.run_it(*verb, self.recipe, "-o", self.folder / "black", "--json", *dark, "--set", "lights=[]")
+            self.assertEqual(run.err.count("environments/dark: nothing in it gives light"), 1, run)
+            self.assertEqual(run.json["concerns"]["assets_unlikely"], 1, run)
 
     def test_help_and_schema_know_them(self):
         text = self.run_it("help", "recipe", "lights").out

@@ -15,6 +15,8 @@ bool is_bright(Vec3 color) {
   return color.x > 0 || color.y > 0 || color.z > 0;
 }
 
+}  // namespace
+
 bool gives_light(const Scene& scene) {
   return std::any_of(scene.lights.begin(), scene.lights.end(),
                      [](const Light& light) { return is_bright(light.color); }) ||
@@ -24,8 +26,6 @@ bool gives_light(const Scene& scene) {
                   (material.emission.texture >= 0 || is_bright(material.emission.constant));
          });
 }
-
-}  // namespace
 
 bool warn_of_repeats(const PropertySet& properties) {
   for (const RepeatedProperty& repeated : properties.repeated())
@@ -42,8 +42,6 @@ void warn_of_materials(const Scene& scene) {
 
 bool warn_of_environment(const Scene& environment, const std::string& name) {
   std::vector<std::string> lines;
-  if (!gives_light(environment))
-    lines.push_back(fmt::format("{}: nothing in it gives light", name));
   for (const Object& object : environment.objects) {
     const std::string& material =
         environment.materials[static_cast<std::size_t>(object.material)].name;

@@ -12,7 +12,9 @@ namespace ds {
 bool warn_of_repeats(const PropertySet& properties);
 /// Warns of each input of its materials that is out of its physical range.
 void warn_of_materials(const Scene& scene);
-/// Warns of an environment that can be traced and is hardly meant so: one that gives no light, and
+/// Whether a light or an object of it is not black.
+bool gives_light(const Scene& scene);
+/// Warns of an environment that can be traced and is hardly meant so:
 /// objects whose material's textures read uv that their meshes do not have.
 bool warn_of_environment(const Scene& environment, const std::string& name);
 
