@@ -135,9 +135,11 @@ std::vector<LabelledModel> parse_class_table(std::string_view text, const std::s
     if (!is_class_path(model.label.class_path))
       diagnostics.add(place, "a class must be names with / between, none of 0 . .., got \"{}\"",
                       model.label.class_path);
-    if (const std::string& split = model.label.split;
-        !split.empty() && split != "train" && split != "test")
-      diagnostics.add(place, "split must be train, test or empty, got \"{}\"", split);
+    if (const std::string called = model.label.split; !called.empty()) {
+      model.label.split = split_named(called);
+      if (model.label.split.empty())
+        diagnostics.add(place, "split must be train, val, test or empty, got \"{}\"", called);
+    }
     const auto [first, is_new] = lines.try_emplace(model.model, place.line);
     if (!is_new)
       diagnostics.add(place, "model {} stands twice, first in line {}", model.model, first->second);

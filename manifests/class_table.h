@@ -16,7 +16,7 @@ namespace ds {
 ///   header = the names of the columns: "name" and "class", and "split" where there is one; in any order
 ///   name   = what a class file may call a model: file name, stem, number, path (Labels)
 ///   class  = from the root down, with "/" between: "vehicle/car"; empty: none
-///   split  = "train", "test" or empty
+///   split  = "train", "val", "test", what split_named takes for one of them, or empty
 ///
 /// Further columns are not read, nor are empty lines. Throws Error(asset), all findings with file:line: a
 /// column missing or there twice, a row of another length, a name that is empty or stands twice, a class

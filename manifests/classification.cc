@@ -16,6 +16,12 @@
 namespace ds {
 namespace {
 
+/// What splits are called, and which they are.
+constexpr std::pair<std::string_view, std::string_view> k_split_names[] = {
+    {"train", "train"},    {"training", "train"}, {"val", "val"},   {"valid", "val"},
+    {"validation", "val"}, {"dev", "val"},        {"test", "test"}, {"testing", "test"},
+    {"eval", "test"},      {"evaluation", "test"}};
+
 std::vector<std::string_view> split_words(std::string_view line) {
   constexpr std::string_view k_blank = " \t\v\f";
   std::vector<std::string_view> words;
@@ -244,6 +250,23 @@ void check_disjoint(const Classification& train, const Classification& test) {
 }
 
 }  // namespace
+
+std::string_view split_named(std::string_view name) {
+  std::string lower(name);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  for (const auto& [called, split] : k_split_names)
+    if (lower == called) return split;
+  return "";
+}
+
+std::string split_names_text() {
+  std::string text;
+  for (const auto& [called, split] : k_split_names)
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", called);
+  return text.replace(text.rfind(", "), 2, " or ");
+}
 
 bool is_class_path(std::string_view path) {
   if (path.empty()) return true;

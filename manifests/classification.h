@@ -47,12 +47,18 @@ Classification parse_classification(std::string_view text, const std::string& na
 /// `file` stands in messages as given. Throws Error(io) where it cannot be read.
 Classification read_classification(const std::filesystem::path& file);
 
+/// "train", "val" or "test" for what people call these, in any case: "training", "validation", "dev",
+/// "eval", ...; "" for any other name.
+std::string_view split_named(std::string_view name);
+/// "train, training, val, ... or evaluation": all that split_named knows.
+std::string split_names_text();
+
 /// Whether it is names with / between, none of them empty, 0, . or ..; "" is, too: no class.
 bool is_class_path(std::string_view path);
 
 struct ModelLabel {
   std::string class_path;  ///< "vehicle/car"; "" for none
-  std::string split;       ///< "train" or "test"; "" for none
+  std::string split;       ///< "train", "val" or "test"; "" for none
   bool operator==(const ModelLabel&) const = default;
 };
 

@@ -33,7 +33,8 @@ namespace ds {
 ///                    meant
 ///   own_materials_partial  models shown in the materials of their files (materials.assign = "own") that
 ///                    have faces without one, or what of it is not shown
-///   distractors_unplaced  images that show fewer distractors than were drawn: no more found a place
+///   distractors_unplaced  images that show fewer distractors than were drawn: no more found a place, or there
+///                    was no other model
 struct Concern {
   std::string name;
   std::uint64_t count = 0;            ///< 0: none

@@ -150,7 +150,7 @@ json image_schema() {
       {"class_path", said(k_text, "vehicle/car; empty: none")},
       {"class_id", said(or_null(k_count), "index of class_paths of dataset.json")},
       {"classes", said(map_of(k_text), "class path by further classification")},
-      {"split", {{"enum", {"train", "test", ""}}}},
+      {"split", {{"enum", {"train", "val", "test", ""}}}},
       {"fold", said(k_count, "of cross-validation; not of the test split")},
       {"material", k_text},
       {"draw_attempts", said(k_count, "how often they were drawn until camera.keep let them pass")},

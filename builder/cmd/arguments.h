@@ -27,6 +27,7 @@ struct Arguments {
   double stall_seconds = 900;
   std::string format, export_folder, gallery_folder, diff_folder, hierarchy;
   std::string import_from, import_psb, import_folder, import_classes = "folders";
+  bool no_split_folders = false, update = false;
   std::vector<std::string> splits, filters, only;
   std::string report_file, against;
   int most_spp = 0, seeds = 4;
@@ -72,6 +73,7 @@ enum class Option {
   import_from,
   import_folder,
   import_classes,
+  import_update,
   copy_models,
   optional_target_and_image,
   topic,

@@ -51,7 +51,8 @@ constexpr ConcernText k_texts[] = {
      true},
     {"own_materials_partial", "models have materials of their own that are not shown whole", "",
      true},
-    {"distractors_unplaced", "images show fewer distractors than were drawn, for want of places"},
+    {"distractors_unplaced",
+     "images show fewer distractors than were drawn, for want of places or of other models"},
 };
 
 const ConcernText& text_of(const Concern& concern) {
@@ -137,9 +138,13 @@ std::vector<Concern> tell_planned_concerns(const Recipe& recipe, const Plan& pla
   for (const PlannedImage& image : plan.images)
     if (!image.error) images.push_back(&image.spec);
   std::vector<Concern> concerns = dataset_concerns(recipe, plan.concerns, {}, images);
-  for (const Concern& concern : concerns)
-    if (concern.count > 0 && !text_of(concern).said && !is_allowed(concern, recipe.coverage))
+  for (const Concern& concern : concerns) {
+    if (concern.count == 0 || text_of(concern).said) continue;
+    if (!is_allowed(concern, recipe.coverage))
       warn(to_text(concern) + remedy(concern, recipe) + way_out(concern));
+    else if (concern.name == "models_unlisted")  // meant once, it may be of new models by now
+      say(Stream::people, "{}{}\n", to_text(concern), remedy(concern, recipe));
+  }
   return concerns;
 }
 

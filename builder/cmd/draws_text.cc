@@ -30,6 +30,12 @@ bool draws_anything(const Recipe& recipe) {
   return !recipe.drawn.empty() || !recipe.distractors.drawn.empty();
 }
 
+/// Whether it is drawn for each distractor, and not for each image.
+bool is_of_each(const Recipe& recipe, const std::string& key) {
+  const std::vector<Drawn>& drawn = recipe.distractors.drawn;
+  return std::any_of(drawn.begin(), drawn.end(), [&](const Drawn& one) { return one.key == key; });
+}
+
 std::size_t longest_key(const Recipe& recipe) {
   std::size_t longest = 0;
   for (const auto* drawn : {&recipe.drawn, &recipe.distractors.drawn})
@@ -48,8 +54,9 @@ void print_draws(const Recipe& recipe, const Plan& plan, bool each_image) {
   for (const auto& [key, draw] : summaries_of(recipe, images)) {
     say(Stream::result, "{:<{}}  {}", key, width, draw.distribution);
     if (draw.count > 0)
-      say(Stream::result, ": {} to {}, mean {}, of {} image{}", numbers_text(draw.least),
-          numbers_text(draw.most), numbers_text(draw.mean), draw.count, draw.count == 1 ? "" : "s");
+      say(Stream::result, ": {} to {}, mean {}, of {} {}{}", numbers_text(draw.least),
+          numbers_text(draw.most), numbers_text(draw.mean), draw.count,
+          is_of_each(recipe, key) ? "distractor" : "image", draw.count == 1 ? "" : "s");
     say(Stream::result, "\n");
   }
   if (!each_image) return;

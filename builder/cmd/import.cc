@@ -50,6 +50,43 @@ void print_broken(const ImportResult& result) {
         result.broken.size() - k_shown);
 }
 
+/// What folders said of splits, which may not be what they are for.
+void print_folders(const ImportResult& result) {
+  std::string told;
+  for (const auto& [folder, split] : result.split_folders)
+    told += fmt::format("{}{}{}", told.empty() ? "" : ", ", folder,
+                        folder == split ? "" : fmt::format(" ({})", split));
+  if (!told.empty())
+    say(Stream::result,
+        "splits are from the folders {} (--no-split-folders takes them for classes)\n", told);
+  if (!result.class_folders.empty())
+    say(Stream::result,
+        "taken for classes, though called as splits are: {} (the column split of classes.csv says "
+        "what is which)\n",
+        fmt::join(result.class_folders, ", "));
+}
+
+/// What an update found beside what is new.
+void print_update(const ImportResult& result) {
+  if (!result.updated) return;
+  print_some("listed, without a file any more; their lines stay", result.gone);
+  print_some("left out as before, since their lines were taken out of classes.csv",
+             result.taken_out);
+  print_some("new ones without a split, which others have in classes.csv", result.unsplit);
+  print_some("new classes", result.new_classes);
+}
+
+/// "recipe.toml: 12 models of 3 classes, 3 test, 9 train"
+std::string summary_of(const ImportResult& result) {
+  std::string splits;
+  for (const auto& [split, count] : result.splits)
+    if (!split.empty()) splits += fmt::format(", {} {}", count, split);
+  return fmt::format("{}: {} {}model{} of {} class{}{}{}", result.recipe.string(), result.models,
+                     result.updated ? "new " : "", result.models == 1 ? "" : "s",
+                     result.classes.size(), result.classes.size() == 1 ? "" : "es", splits,
+                     result.updated ? fmt::format(" beside {}", result.kept) : "");
+}
+
 nlohmann::json to_json(const ImportResult& result) {
   nlohmann::json broken = nlohmann::json::array();
   for (const auto& [model, why] : result.broken)
@@ -57,18 +94,27 @@ nlohmann::json to_json(const ImportResult& result) {
   nlohmann::json own_broken = nlohmann::json::array();
   for (const auto& [model, why] : result.own_broken)
     own_broken.push_back({{"model", model}, {"error", why}});
-  return {{"recipe", result.recipe.string()},
-          {"models", result.models},
-          {"splits", result.splits},
-          {"classes", result.classes},
-          {"classes_of_one_model", result.single},
-          {"hierarchies", result.hierarchies},
-          {"broken", broken},
-          {"mended", result.mended},
-          {"missing", result.missing},
-          {"unclassified", result.unclassified},
-          {"own_materials", result.own},
-          {"own_materials_broken", own_broken}};
+  nlohmann::json json{{"recipe", result.recipe.string()},
+                      {"models", result.models},
+                      {"splits", result.splits},
+                      {"classes", result.classes},
+                      {"classes_of_one_model", result.single},
+                      {"hierarchies", result.hierarchies},
+                      {"broken", broken},
+                      {"mended", result.mended},
+                      {"missing", result.missing},
+                      {"unclassified", result.unclassified},
+                      {"split_folders", result.split_folders},
+                      {"class_folders", result.class_folders},
+                      {"own_materials", result.own},
+                      {"own_materials_broken", own_broken}};
+  if (result.updated)
+    json.update({{"kept", result.kept},
+                 {"new_classes", result.new_classes},
+                 {"taken_out", result.taken_out},
+                 {"gone", result.gone},
+                 {"unsplit", result.unsplit}});
+  return json;
 }
 
 /// A folder for each model, as ShapeNet has them, is hardly a class of its own.
@@ -90,8 +136,12 @@ void warn_of_single(const ImportResult& result, const Arguments& arguments) {
 
 int run_import(const Arguments& arguments) {
   const fs::path source = source_of(arguments);
-  const ImportRequest request{source, folder_of(arguments, source), arguments.copy,
-                              arguments.import_classes};
+  const ImportRequest request{source,
+                              folder_of(arguments, source),
+                              arguments.copy,
+                              arguments.import_classes,
+                              !arguments.no_split_folders,
+                              arguments.update};
   const std::atomic<bool>& stop = stop_on_signal();
   ImportResult result;
   {
@@ -112,12 +162,9 @@ int run_import(const Arguments& arguments) {
   for (std::size_t i = 0; i < std::min(result.own_broken.size(), k_shown); ++i)
     say(Stream::result, "own materials of {} cannot be shown: {}\n", result.own_broken[i].first,
         result.own_broken[i].second);
-  std::string splits;
-  for (const auto& [split, count] : result.splits)
-    if (!split.empty()) splits += fmt::format(", {} {}", count, split);
-  say(Stream::report, "{}: {} model{} of {} class{}{}\n", result.recipe.string(), result.models,
-      result.models == 1 ? "" : "s", result.classes.size(), result.classes.size() == 1 ? "" : "es",
-      splits);
+  print_folders(result);
+  print_update(result);
+  say(Stream::report, "{}\n", summary_of(result));
   return 0;
 }
 

@@ -121,6 +121,13 @@ void add_option(CLI::App& verb, Option option, CommandLine& line) {
           "where there are no class files: a model's class is the first folder below DIR that it "
           "lies in, or all of them, as vehicle/car [folders]");
       return;
+    case Option::import_update:
+      verb.add_flag("--no-split-folders", to.no_split_folders,
+                    "folders called train, val, test and the like are classes as any others");
+      verb.add_flag("--update", to.update,
+                    "add what is new in DIR to what an import wrote, whose files stay as they are: "
+                    "lines at the end of classes.csv and ids.txt");
+      return;
     case Option::copy_models:
       verb.add_flag("--copy", to.copy, "copy the models beside the recipe, with their licences");
       return;

@@ -48,7 +48,7 @@ const std::vector<Verb>& verbs() {
        run_gallery},
       {"import",
        "write a recipe for a folder of models, with classes, materials and environments",
-       {import_from, import_folder, import_classes, copy_models, json},
+       {import_from, import_folder, import_classes, import_update, copy_models, json},
        run_import},
       {"init",
        "write a recipe for a folder of models, with every key in it as a comment",

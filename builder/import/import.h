@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +20,8 @@ struct ImportRequest {
   /// Without class files: "folders", all that a model lies in, or "folder", the first of them, as where each
   /// model has one of its own.
   std::string classes = "folders";
+  bool split_folders = true;  ///< folders called train, val, test tell splits (SplitFolders)
+  bool update = false;        ///< `to` is an import's, and gets what is new of `from`
 };
 
 struct ImportResult {
@@ -37,6 +40,16 @@ struct ImportResult {
       own;  ///< models with materials of their own, all files of which are there
   /// Models whose own materials cannot be shown, and why: they are none of `own`.
   std::vector<std::pair<std::string, std::string>> own_broken;
+  /// Folders that told splits, and which, and those called as if they did that are classes.
+  std::map<std::string, std::string> split_folders;
+  std::set<std::string> class_folders;
+  // Of an update, which counts and names what is new above:
+  bool updated = false;
+  std::uint64_t kept = 0;  ///< models that were listed already
+  std::vector<std::string> new_classes;
+  std::vector<std::string> taken_out;  ///< whose lines were taken out of classes.csv by hand
+  std::vector<std::string> gone;       ///< listed, and no file any more: their lines stay
+  std::vector<std::string> unsplit;    ///< new ones without a split, where others have one
 };
 
 /// Writes a recipe for a folder of models, and what it needs: classes.csv, ids.txt, more/*.csv of
@@ -45,7 +58,13 @@ struct ImportResult {
 /// (of several classifications "base" comes first, or else that of most classes, and the others are
 /// further ones); else a model's class are the folders it lies in. With `copy`, what models' own
 /// materials are in goes with them, where it lies in `from`. The recipe is written last; an import
-/// that was cut short is done again. Throws Error(usage) where `from` holds no model or `to` is taken,
+/// that was cut short is done again.
+///
+/// With `update`, models that are not in its classes.csv get lines at its end, their classes lines at the end of
+/// ids.txt, and further classifications likewise; where it has copies of models they are copied there, too.
+/// Nothing else is touched: no line of a file that is there, neither recipe nor materials.
+///
+/// Throws Error(usage) where `from` holds no model, `to` is taken or is nothing to update,
 /// Error(asset) where no model can be used, Error(cancelled) once `stop`. `progress`: models read of all.
 ImportResult import_models(const ImportRequest& request,
                            const std::function<void(std::uint64_t, std::uint64_t)>& progress,

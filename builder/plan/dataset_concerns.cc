@@ -74,7 +74,9 @@ void look_at_labels(std::vector<Concern>& concerns, const Recipe& recipe,
 void look_at_splits(std::vector<Concern>& concerns, const Recipe& recipe,
                     const std::vector<ImageFacts>& images,
                     const std::vector<const ImageSpec*>& pending) {
-  const bool by_chance = recipe.split.test || !recipe.split.held_out.empty();
+  const SplitSettings& asked = recipe.split;
+  const bool by_name = !asked.held_out.empty() || !asked.held_out_val.empty();
+  const bool by_share = asked.test || asked.val;
   const bool by_table = !recipe.classes_from.empty() && recipe.labels.has_splits();
   Concern& empty = concern(concerns, "splits_empty");
   const auto look_at = [&](const char* split, bool wanted) {
@@ -86,8 +88,13 @@ void look_at_splits(std::vector<Concern>& concerns, const Recipe& recipe,
         std::none_of(pending.begin(), pending.end(), is_to_come))
       add_example(empty, split);
   };
-  look_at("train", by_chance || recipe.train_classes || by_table);
-  look_at("test", by_chance || recipe.test_classes || by_table);
+  const bool val_by_table =
+      by_table && std::any_of(recipe.models.begin(), recipe.models.end(), [&](const auto& model) {
+        return recipe.labels.find(model.name).value_or(ModelLabel{}).split == "val";
+      });
+  look_at("train", by_share || by_name || recipe.train_classes || by_table);
+  look_at("val", asked.val || !asked.held_out_val.empty() || val_by_table);
+  look_at("test", asked.test || !asked.held_out.empty() || recipe.test_classes || by_table);
 }
 
 PixelCounts count_file(const std::filesystem::path& file, const std::string& kind) {

@@ -78,7 +78,10 @@ const Scene& material_of(const Distractor& distractor, Inputs& inputs) {
 void place_distractors(ImageSpec& image, const Recipe& recipe, Inputs& inputs) {
   image.unplaced = 0;
   if (recipe.distractors.models.empty()) return;
-  std::vector<Distractor> drawn = draw_distractors(image, recipe);
+  std::vector<Distractor> drawn =
+      draw_distractors(image, recipe, [&](const DistractorModel& model) {
+        return inputs.model_hashes(model.file).shape == inputs.model_hashes(image.model_file).shape;
+      });
   const auto count = static_cast<int>(image.variables->values.distractor_count);
   const double gap = recipe.distractors.gap_m;
   std::vector<Cylinder> taken{cylinder_around(inputs.model_extent(image.model_file),

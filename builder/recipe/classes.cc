@@ -2,6 +2,7 @@
 #include "builder/recipe/classes.h"
 
 #include "builder/recipe/class_files.h"
+#include "builder/recipe/split_folders.h"
 #include "manifests/concerns.h"
 #include "tracer/base/file_names.h"
 #include "tracer/scene/mesh_formats.h"
@@ -145,36 +146,46 @@ struct ClassSource {
   std::string_view from;  ///< the value of classes.from, or the ending of a file that it names
   bool is_file;
   /// `file` is empty where it is none. Throws Error(asset), all findings.
-  std::vector<LabelledModel> (*read)(const fs::path& file, const Recipe& recipe);
+  std::vector<LabelledModel> (*read)(const fs::path& file, const Recipe& recipe, bool tell_splits);
 };
 
-/// The names of the first `most` folders below models.dir, but for one called train or test, which is the
-/// model's split.
-std::vector<LabelledModel> labels_of_folders(const Recipe& recipe, std::size_t most) {
+/// The names of the first `most` folders below models.dir, but for one that tells the model's split.
+std::vector<LabelledModel> labels_of_folders(const Recipe& recipe, bool tell_splits,
+                                             std::size_t most) {
+  const SplitFolders splits(recipe.models);
   std::vector<LabelledModel> models;
   for (const ModelFile& model : recipe.models) {
     LabelledModel labelled{model.name, {}, {}};
+    auto& [path, split] = labelled.label;
     std::size_t levels = 0;
+    std::string parent;
     for (const fs::path& folder : fs::path(model.below).parent_path()) {
-      std::string& split = labelled.label.split;
-      std::string& path = labelled.label.class_path;
-      if (split.empty() && (folder == "train" || folder == "test"))
-        split = folder.string();
+      const std::string name = folder.string();
+      const std::string_view told =
+          split.empty() && tell_splits ? splits.split_of(parent, name) : std::string_view();
+      if (!told.empty())
+        split = told;
       else if (levels++ < most)
-        path += (path.empty() ? "" : "/") + folder.string();
+        path += (path.empty() ? "" : "/") + name;
+      parent += "/" + name;
     }
-    if (levels > 0) models.push_back(std::move(labelled));
+    if (levels > 0 || !split.empty()) models.push_back(std::move(labelled));
   }
   return models;
 }
 
 constexpr ClassSource k_class_sources[] = {
     {"folder", false,
-     [](const fs::path&, const Recipe& recipe) { return labels_of_folders(recipe, 1); }},
+     [](const fs::path&, const Recipe& recipe, bool tell_splits) {
+       return labels_of_folders(recipe, tell_splits, 1);
+     }},
     {"folders", false,
-     [](const fs::path&, const Recipe& recipe) { return labels_of_folders(recipe, SIZE_MAX); }},
-    {".csv", true, [](const fs::path& file, const Recipe&) { return read_class_list(file); }},
-    {".cla", true, [](const fs::path& file, const Recipe&) { return read_class_list(file); }}};
+     [](const fs::path&, const Recipe& recipe, bool tell_splits) {
+       return labels_of_folders(recipe, tell_splits, SIZE_MAX);
+     }},
+    {".csv", true, [](const fs::path& file, const Recipe&, bool) { return read_class_list(file); }},
+    {".cla", true,
+     [](const fs::path& file, const Recipe&, bool) { return read_class_list(file); }}};
 
 /// The row that a value of classes.from means; null, with a finding, for none.
 const ClassSource* source_of(Settings& settings, const RecipeValue& from) {
@@ -213,7 +224,8 @@ bool read_one_source(Settings& settings, Recipe& recipe) {
   }
   recipe.classes_from = file ? file->filename().string() : *from->text();
   try {
-    recipe.labels = Labels(source->read(file.value_or(fs::path()), recipe));
+    recipe.labels = Labels(
+        source->read(file.value_or(fs::path()), recipe, settings.boolean("classes.split_folders")));
   } catch (const Error& error) {
     add_findings(error, settings.diagnostics());
     return false;
@@ -256,6 +268,10 @@ bool read_class_files(Settings& settings, Recipe& recipe) {
 void read_classes(Settings& settings, Recipe& recipe) {
   const bool has_files = read_class_files(settings, recipe);
   const bool has_source = read_one_source(settings, recipe);
+  if (settings.given("classes.split_folders") && !settings.misspelt("classes.from") &&
+      recipe.classes_from != "folder" && recipe.classes_from != "folders")
+    settings.complain("classes.split_folders",
+                      "has no effect without classes.from = \"folder\" or \"folders\"");
   if ((has_files || has_source) && settings.diagnostics().empty()) match_labels(settings, recipe);
   for (const auto& file : {recipe.train_classes, recipe.test_classes, recipe.class_table})
     if (file) recipe.class_files.push_back(*file);

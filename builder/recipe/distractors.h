@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -43,6 +44,7 @@ struct DistractorSettings {
   std::vector<Drawn> drawn;             ///< for each distractor: place_m, size_m, turn
   double gap_m = 0;
   int tries = 0;
+  bool own = false;  ///< an image's own model may be one, too
 };
 
 /// One that an image shows.
@@ -66,8 +68,12 @@ void read_distractors(Settings& settings, Recipe& recipe);
 
 /// Those that the image is to show, not placed yet: as many as its count says, each drawn by seed, model,
 /// view, key and number, so that one more moves no other. Which model and which material, by the highest
-/// hash, as materials are chosen. Fewer, or none, where no model is of the image's split and fold.
-std::vector<Distractor> draw_distractors(const ImageSpec& image, const Recipe& recipe);
+/// hash, as materials are chosen; the image's own model, and what `is_own` says of besides, is passed over for
+/// the next one unless the recipe wants it. Fewer, or none, where no other model is of the image's split and
+/// fold.
+std::vector<Distractor> draw_distractors(
+    const ImageSpec& image, const Recipe& recipe,
+    const std::function<bool(const DistractorModel&)>& is_own = nullptr);
 /// Draws the place of one that was rejected so often at others.
 void draw_place(Distractor& distractor, const ImageSpec& image, const Recipe& recipe, int tries);
 

@@ -151,11 +151,8 @@ std::map<std::string, std::string> other_classes_of(const Recipe& recipe,
 
 /// Split and fold of an image whose other fields stand.
 void label_image(ImageSpec& image, const Splits& splits, SplitBy by, const ModelLabel& label) {
-  const std::string& thing = by == SplitBy::model         ? *image.model_name
-                             : by == SplitBy::material    ? *image.material_name
-                             : by == SplitBy::environment ? *image.environment_name
-                                                          : *image.view;
-  if (by != SplitBy::model) image.split = splits.of_image(label, thing);
+  const std::string& thing = split_thing(image, by);
+  if (!keeps_models_whole(by)) image.split = splits.of_image(label, thing);
   image.fold = splits.fold(image.split, thing);
 }
 

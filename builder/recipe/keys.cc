@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/recipe/keys.h"
 
+#include "builder/recipe/class_keys.h"
 #include "builder/recipe/distractors.h"
 #include "manifests/check/check.h"
 #include "tracer/base/nearest.h"
@@ -33,6 +34,8 @@ constexpr std::string_view k_ring_sets =
     R"(camera.set = "half-dodecahedron" | "orbit" | "hemisphere")";
 constexpr std::string_view k_spiral_sets = R"(camera.set = "orbit" | "hemisphere")";
 constexpr std::string_view k_counted_sets = R"(camera.set = "orbit" | "hemisphere" | "random")";
+/// The first key of the section that stands behind classes.
+constexpr std::string_view k_behind_classes = "materials.dir";
 constexpr std::string_view k_chosen_materials = R"(materials.assign != "own")";
 constexpr std::string_view k_with_distractors = "distractors.dir != false";
 constexpr std::string_view k_reinhard = R"(outputs.tone_map = "reinhard02")";
@@ -40,7 +43,7 @@ constexpr std::string_view k_reinhard = R"(outputs.tone_map = "reinhard02")";
 using enum KeyType;
 using enum Moves;
 
-/// But what cameras and checks add.
+/// But those of classes, and what cameras and checks add.
 constexpr std::array k_own_keys = {
     KeySpec{"dataset.name", manifest, name, "", "(the recipe's file name less .toml)", k_any, "",
             "", "Names the dataset and its folder under out/"},
@@ -48,10 +51,11 @@ constexpr std::array k_own_keys = {
             "Changes every random choice, every split by hash and the noise of every image"},
     KeySpec{"dataset.licence", manifest, text, "", "\"\"", k_any, "", "",
             "Licence of the pictures, copied into the manifest"},
-    KeySpec{
-        "dataset.unlicensed", manifest, choice, "", "\"keep\"", k_any, R"("keep" | "error")", "",
-        "Models, materials and environments with no licence beside them: build with them, and say "
-        "so in exports, or fail"},
+    KeySpec{"dataset.unlicensed", manifest, choice, "", "\"keep\"", k_any, R"("keep" | "error")",
+            "",
+            "Models, materials and environments with no licence beside them (LICENSE, COPYING, "
+            "...: see "
+            "Licences and sources): build with them, and say so in exports, or fail"},
     KeySpec{
         "dataset.unsourced", manifest, choice, "", "\"keep\"", k_any, R"("keep" | "error")", "",
         "Likewise of those with no source beside them: a SOURCE file that says whence they are"},
@@ -112,60 +116,6 @@ constexpr std::array k_own_keys = {
             R"(models.normals = "smooth")",
             "Faces that meet at a larger angle keep an edge; 180 smooths every edge"},
 
-    KeySpec{"classes.train", manifest, path, "", "", k_any, "", "",
-            "Class file (.cla) of the training models. {models.dir} in it stands for models.dir, "
-            "and the key counts as unset where models.files is used instead"},
-    KeySpec{"classes.test", manifest, path, "", "", k_any, "", "",
-            "Class file of the test models, likewise"},
-    KeySpec{"classes.from", manifest, path, "", "", k_any, "", "",
-            "Where classes come from instead: \"folder\" (a model's class is the folder of "
-            "models.dir it "
-            "lies in) or \"folders\" (all folders down to it), or a file, .csv with columns name, "
-            "class "
-            "and split, or .cla: see Classes and splits"},
-    KeySpec{
-        "classes.more", manifest, path_list, "", "", k_any, "", "",
-        "Further classifications, .cla or .csv files, whose classes stand beside the others' in "
-        "the "
-        "manifest and can be exported in their place. One is called as its files are, less Train "
-        "or Test behind it: coarse1Train.cla and coarse1Test.cla are of coarse1"},
-    KeySpec{
-        "classes.ids", manifest, path, "", "", k_any, "", "",
-        "Text file of class paths, one a line: a class's id is its place, from 0. Classes that it "
-        "does "
-        "not name come behind, sorted, as all do without it; so a class that is added at its end "
-        "changes no other's id. dsbuild classes --ids prints one"},
-    KeySpec{"classes.split.test", manifest, number, "", "", between(0, 1), "", "",
-            "Share of what split.by names to put into the test split, where nothing else says what "
-            "is test. Without it and split.held_out there is no split"},
-    KeySpec{
-        "classes.split.by", manifest, choice, "", "\"model\"", k_any,
-        R"("model" | "material" | "environment" | "view")", "",
-        "What is split: all images of a model (material, ...) stay together, chosen by a hash of "
-        "dataset.seed and its name; of two materials, environments or views or more one at least "
-        "is in each split"},
-    KeySpec{"classes.split.stratified", manifest, boolean, "", "false", k_any, "",
-            R"(classes.split.by = "model")",
-            "The share is of each class's models, rounded, at least one and not all where it has "
-            "two. Each fold of split.folds has as many of a class as any other, give or take one"},
-    KeySpec{"classes.split.held_out", manifest, text_list, "", "", k_any, "", "",
-            "Names of the models, materials, environments or views (split.by) that are the test "
-            "split, in place of a share"},
-    KeySpec{
-        "classes.split.folds", manifest, integer, "", "", between(2, 1000), "", "",
-        "Cross-validation: each image that is not of the test split gets a fold in the manifest, "
-        "from 0 to one less, by a hash of what split.by names"},
-    KeySpec{"classes.missing", manifest, choice, "", "\"ignore\"", k_any, R"("ignore" | "error")",
-            "", "A model that a class file lists and that has no file: count it, or fail"},
-    KeySpec{"classes.unlisted", images, choice, "", "\"keep\"", k_any,
-            R"("keep" | "skip" | "error")", "",
-            "A model file that no class file lists: build it with class and split \"\", leave it "
-            "out, or fail"},
-    KeySpec{
-        "classes.unshared", manifest, choice, "", "\"keep\"", k_any, R"("keep" | "error")", "",
-        "A class that has models in one of the two class files only, as where it was renamed in "
-        "one: count it, or fail"},
-
     KeySpec{"materials.dir", images, path, "", "", k_any, "", k_chosen_materials,
             "Folder of materials: its .mat files. Either this or materials.files must be given; "
             "with --set, the one given replaces the other"},
@@ -180,8 +130,8 @@ constexpr std::array k_own_keys = {
             R"(materials.assign = "random" | "balanced")",
             "Whether chance chooses once for all views of a model, or anew for each view"},
     KeySpec{"materials.vary", film, patterns, "", "{}", k_any, "", k_chosen_materials,
-            "What is drawn of the material an image shows: by NAME.PROPERTY of its file, a "
-            "distribution or a constant; see Distributions"},
+            "What is drawn of the material that an image's model shows (distractors' stay as they "
+            "are): by NAME.PROPERTY of its file, a distribution or a constant; see Distributions"},
 
     KeySpec{
         "distractors.dir", scene, path, "", "false", k_any, R"(false | "{models}")", "",
@@ -211,6 +161,8 @@ constexpr std::array k_own_keys = {
             "camera from a distractor's"},
     KeySpec{"distractors.tries", scene, integer, "", "64", between(1, 10000), "",
             k_with_distractors, "Most draws of a distractor's place"},
+    KeySpec{"distractors.own", scene, boolean, "", "false", k_any, "", k_with_distractors,
+            "Whether an image's own model, or another file of its mesh, may be a distractor, too"},
     KeySpec{"distractors.class", manifest, text, "", "\"\"", k_any, "",
             R"(distractors.dir != false | "{models}")",
             "Class path of distractors that are not the recipe's own models; \"\": none, and then "
@@ -457,6 +409,8 @@ std::vector<KeySpec> make_keys() {
   std::vector<KeySpec> keys;
   for (KeySpec key : k_own_keys) {
     const bool is_type = key.name == "camera.type";
+    if (key.name == k_behind_classes)
+      keys.insert(keys.end(), class_keys().begin(), class_keys().end());
     if (is_type) {
       key.default_value = cameras.default_type;
       key.choices = cameras.types;

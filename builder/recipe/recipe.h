@@ -67,15 +67,21 @@ struct ClassCoverage {
 };
 
 /// What is of one split, whole.
-enum class SplitBy { model, material, environment, view };
+enum class SplitBy { model, model_class, material, environment, view };
+
+/// Whether all images of a model are of one split.
+inline bool keeps_models_whole(SplitBy by) {
+  return by == SplitBy::model || by == SplitBy::model_class;
+}
 
 /// classes.split.
 struct SplitSettings {
   SplitBy by = SplitBy::model;
-  std::optional<double> test;      ///< share of what `by` names
-  std::set<std::string> held_out;  ///< or those that are test, by name
-  bool stratified = false;         ///< the share is of each class's models
-  int folds = 0;                   ///< 0: none
+  std::optional<double> test, val;  ///< shares of what `by` names
+  std::set<std::string> held_out;   ///< or those that are test, by name
+  std::set<std::string> held_out_val;
+  bool stratified = false;  ///< the shares are of each class's models
+  int folds = 0;            ///< 0: none
 };
 
 /// A pattern of materials.vary or environments.vary.
@@ -195,11 +201,12 @@ struct ImageSpec {
   Shared<std::vector<Distractor>> distractors;  ///< those that found a place; where settled
   int unplaced = 0;                             ///< how many found none
   Shared<std::vector<Light>> lights;            ///< beside the environment's; where settled
-  double lowest = 0;                  ///< of its model, as lowest_of has it; known where settled
-  EngineSettings engine;              ///< with this image's own seed, below 2^53
-  Shared<std::string> class_path;     ///< "vehicle/car", "" where unclassified
-  Shared<std::string> split;          ///< "train", "test" or "" where there is none
-  std::optional<std::uint64_t> fold;  ///< below SplitSettings::folds; none in the test split
+  double lowest = 0;               ///< of its model, as lowest_of has it; known where settled
+  EngineSettings engine;           ///< with this image's own seed, below 2^53
+  Shared<std::string> class_path;  ///< "vehicle/car", "" where unclassified
+  Shared<std::string> split;       ///< "train", "val", "test" or "" where there is none
+  std::optional<std::uint64_t>
+      fold;  ///< below SplitSettings::folds; none in the splits val and test
   Shared<std::map<std::string, std::string>> other_classes;  ///< class path by Recipe::hierarchies
 };
 

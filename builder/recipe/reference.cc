@@ -3,6 +3,7 @@
 #include "builder/recipe/lights.h"
 #include "builder/recipe/planes.h"
 #include "builder/recipe/variables.h"
+#include "manifests/classification.h"
 #include "tracer/scene/mesh_formats.h"
 
 #include <fmt/format.h>
@@ -120,7 +121,9 @@ std::string help_cell(const KeySpec& key) {
 }  // namespace
 
 std::string help_of(const KeySpec& key) {
-  return replace_all(std::string(key.help), "{mesh endings}", mesh_endings_text(" and "));
+  const std::string help =
+      replace_all(std::string(key.help), "{mesh endings}", mesh_endings_text(" and "));
+  return replace_all(help, "{split names}", split_names_text());
 }
 
 std::string wanted_text(const KeySpec& key) {

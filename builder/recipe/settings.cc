@@ -105,6 +105,32 @@ std::string choice_meant(const KeySpec& key, const RecipeValue& value) {
   return did_you_mean(to_toml(value), literals);
 }
 
+bool is_list_of_tables(const RecipeValue& value) {
+  const RecipeValue::Array* list = value.array();
+  return list != nullptr && !list->empty() &&
+         std::all_of(list->begin(), list->end(),
+                     [](const RecipeValue& one) { return one.table() != nullptr; });
+}
+
+/// "; [[lights]] begins each": where TOML's one bracket or two make a table of what is a list, or the other way
+/// round.
+std::string list_meant(const KeySpec& key, const RecipeValue& value) {
+  if (key.type == KeyType::lights && value.table() != nullptr)
+    return fmt::format("; each begins with [[{0}]], two brackets, of which [{0}] makes no list",
+                       key.name);
+  if (key.type == KeyType::patterns && is_list_of_tables(value))
+    return fmt::format("; it is [{0}], not [[{0}]]", key.name);
+  return "";
+}
+
+/// Whether a key of another section is worth naming, which takes such a value: classes.train is a path, and so
+/// not what a share is for.
+bool may_mean(std::string_view unknown, std::string_view meant, const RecipeValue& value) {
+  const auto section_of = [](std::string_view name) { return name.substr(0, name.rfind('.')); };
+  return section_of(unknown) == section_of(meant) || fits(*find_key(meant), value) ||
+         (find_variable(meant) != nullptr && is_distribution(value));
+}
+
 bool is_section(std::string_view name) {
   const auto keys = recipe_keys();
   return std::any_of(keys.begin(), keys.end(), [&](const KeySpec& key) {
@@ -165,7 +191,11 @@ void Settings::check(const std::string& name, RecipeValue value) {
   const KeySpec* key = find_key(name);
   if (key == nullptr) {
     if (is_section(name)) {
-      complain(value, name, fmt::format("must be a table of keys, got {}", found_text(value)));
+      const bool is_list = is_list_of_tables(value);
+      complain(
+          value, name,
+          fmt::format("must be {}a table of keys, got {}{}", is_list ? "one [" + name + "], " : "",
+                      found_text(value), is_list ? ", as [[" + name + "]] makes it" : ""));
       return;
     }
     complain_of_unknown(name, value);
@@ -184,9 +214,10 @@ void Settings::check(const std::string& name, RecipeValue value) {
   if (const RecipeValue* unfit = unfit_part(*key, value)) {
     const std::string plane = plane_meant(name, *unfit);
     complain(*unfit, name,
-             fmt::format("must be {}, got {}{}{}", wanted_text(*key), found_text(*unfit),
+             fmt::format("must be {}, got {}{}{}{}", wanted_text(*key), found_text(*unfit),
                          plane.empty() ? choice_meant(*key, *unfit) : plane,
-                         is_distribution(value) ? "; it takes no distribution" : ""));
+                         is_distribution(value) ? "; it takes no distribution" : "",
+                         list_meant(*key, *unfit)));
     wrong_.emplace(name, std::move(value));
     return;
   }
@@ -203,7 +234,8 @@ void Settings::complain_of_unknown(const std::string& name, const RecipeValue& v
     complain(value, name, "is no key of a recipe" + help);
     return;
   }
-  if (const std::string_view meant = nearest_key(name); !meant.empty()) {
+  if (const std::string_view meant = nearest_key(name);
+      !meant.empty() && may_mean(name, meant, value)) {
     meant_.emplace(meant);
     help = fmt::format(", did you mean {}?", meant);
   } else {

@@ -65,8 +65,10 @@ void check_balance(const CheckInput& input, CheckReport& report) {
                    "says {} looks good",
                    least->first, least->second, most->first, most->second, ratio, most->first),
                "models.files or class files with fewer of it; or weights in training");
-  for (const Division& division : divisions_of(input.images))
-    check_parts(input, report, division);
+  // Where classes are split, each is meant to be in one alone.
+  if (split_by(input) != "class")
+    for (const Division& division : divisions_of(input.images))
+      check_parts(input, report, division);
   std::vector<std::string> lonely;
   for (const auto& [path, of] : models)
     if (of.size() == 1) lonely.push_back(path);

@@ -29,6 +29,11 @@ std::vector<Division> divisions_of(const std::vector<ImageRecord>& images) {
   return divisions;
 }
 
+std::string split_by(const CheckInput& input) {
+  const std::string literal = input.setting("classes.split.by");
+  return literal.size() < 2 ? "model" : literal.substr(1, literal.size() - 2);
+}
+
 std::string_view divided_by(const ImageRecord& a, const ImageRecord& b) {
   if (a.split != b.split) return "split";
   return a.fold && b.fold && *a.fold != *b.fold ? "fold" : "";

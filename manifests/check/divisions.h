@@ -25,6 +25,9 @@ struct Division {
 /// Splits and folds, those of two parts or more.
 std::vector<Division> divisions_of(const std::vector<ImageRecord>& images);
 
+/// What the recipe splits: "model", "class", "material", "environment" or "view".
+std::string split_by(const CheckInput& input);
+
 /// "split" where the images are in different ones, else "fold" where they are in different folds, else "".
 std::string_view divided_by(const ImageRecord& a, const ImageRecord& b);
 

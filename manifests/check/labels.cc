@@ -19,10 +19,12 @@ void check_meshes(const CheckInput& input, CheckReport& report, const Meshes& me
   std::vector<std::string> same;
   for (const auto& [mesh, by_class] : by_mesh) {
     if (by_class.size() < 2) continue;
-    std::vector<std::string> names;
-    for (const auto& [class_path, model] : by_class)
+    std::vector<std::string> names, models;
+    for (const auto& [class_path, model] : by_class) {
       names.push_back(name_in(model, class_path));
-    same.push_back(fmt::format("{}", fmt::join(names, ", ")));
+      models.push_back(model);
+    }
+    same.push_back(fmt::format("{}{}", fmt::join(names, ", "), meshes.doubt(models)));
   }
   report.add(CheckLevel::error, "models are the same mesh in two classes", same, by_mesh.size(),
              "give it one class, or leave a copy out",

@@ -61,10 +61,12 @@ void check_meshes(const CheckInput& input, CheckReport& report, const Division& 
   std::vector<std::string> same;
   for (const auto& [mesh, by_part] : by_mesh) {
     if (by_part.size() < 2) continue;
-    std::vector<std::string> names;
-    for (const auto& [part, model] : by_part)
+    std::vector<std::string> names, models;
+    for (const auto& [part, model] : by_part) {
       names.push_back(name_in(model, part));
-    same.push_back(fmt::format("{}", fmt::join(names, ", ")));
+      models.push_back(model);
+    }
+    same.push_back(fmt::format("{}{}", fmt::join(names, ", "), meshes.doubt(models)));
   }
   report.add(CheckLevel::error, fmt::format("models are the same mesh in two {}", division.many),
              same, by_mesh.size(),
@@ -108,8 +110,8 @@ void check_leaks(const CheckInput& input, CheckReport& report) {
     return;
   }
   // Where materials, environments or views are split, models are meant to be in both.
-  const std::string by = input.setting("classes.split.by");
-  const bool by_model = by.empty() || by == "\"model\"";
+  const std::string by = split_by(input);
+  const bool by_model = by == "model" || by == "class";
   const Meshes meshes(input.images, input.dataset.shapes);
   const std::vector<ModelPair> near =
       by_model ? near_pairs(input, meshes) : std::vector<ModelPair>();

@@ -39,13 +39,18 @@ class Merged {
 
 Meshes::Meshes(const std::vector<ImageRecord>& images,
                const std::map<std::string, std::string>& shapes) {
-  Merged merged;
+  Merged merged, by_key;
   std::map<Hash128, std::size_t> by_part;
   std::map<std::tuple<std::string_view, std::array<double, 6>>, std::size_t> by_file;
   for (const ImageRecord& image : images) {
     const auto [model, is_new] = numbers_.try_emplace(image.model);
-    if (is_new) model->second = merged.add();
-    merged.merge(by_part.try_emplace(image.parts[0], model->second).first->second, model->second);
+    if (is_new) {
+      model->second = merged.add();
+      by_key_.emplace(image.model, by_key.add());
+    }
+    const std::size_t met = by_part.try_emplace(image.parts[0], model->second).first->second;
+    merged.merge(met, model->second);
+    by_key.merge(met, model->second);
     const auto shape = shapes.find(image.model);
     if (!image.pose || shape == shapes.end() || shape->second.empty()) continue;
     const auto at =
@@ -56,6 +61,15 @@ Meshes::Meshes(const std::vector<ImageRecord>& images,
   for (auto& [model, number] : numbers_)
     number = tops.try_emplace(merged.top(number), tops.size()).first->second;
   count_ = tops.size();
+  for (auto& [model, number] : by_key_)
+    number = by_key.top(number);
+}
+
+std::string Meshes::doubt(const std::vector<std::string>& models) const {
+  const bool sure = std::all_of(models.begin(), models.end(), [&](const std::string& model) {
+    return by_key_.at(model) == by_key_.at(models.front());
+  });
+  return sure ? "" : ": the same or mirrored";
 }
 
 std::size_t Meshes::of(const std::string& model) const {

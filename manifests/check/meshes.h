@@ -14,7 +14,7 @@ namespace ds {
 /// Says of all models, by name, which are one mesh: those of one number. They are where the model's parts of
 /// their render keys meet (which have the mesh, how it was set up, and uvs and colours where the material reads
 /// them), or where shape and box of their files are the same: that holds however the recipe turns, scales and
-/// moves each. A mesh mirrored within its own box counts as the same.
+/// moves each. A mesh mirrored within its own box has these too, and counts as the same: `doubt` says so.
 class Meshes {
  public:
   explicit Meshes(const std::vector<ImageRecord>& images,
@@ -22,9 +22,12 @@ class Meshes {
 
   std::size_t of(const std::string& model) const;
   std::size_t count() const { return count_; }
+  /// ": the same or mirrored" of models that are one mesh by shape and box alone, else "".
+  std::string doubt(const std::vector<std::string>& models) const;
 
  private:
   std::map<std::string_view, std::size_t> numbers_;
+  std::map<std::string_view, std::size_t> by_key_;  ///< the same where keys meet
   std::size_t count_ = 0;
 };
 

@@ -3,6 +3,7 @@
 // with the class, in bits, against what chance gives: the values dealt out anew among the models (or the
 // images, where a model has several), by hash, so that the answer is the same everywhere.
 #include "manifests/check/check.h"
+#include "manifests/check/divisions.h"
 #include "tracer/base/error.h"
 
 #include <algorithm>
@@ -135,7 +136,7 @@ void check_shortcuts(const CheckInput& input, CheckReport& report) {
                 {name, field, "class", &ImageRecord::class_path,
                  "a classifier may learn it in place of the model", advice});
     // What is held out is meant to tell the split.
-    if (input.setting("classes.split.by") != fmt::format("\"{}\"", name))
+    if (split_by(input) != name)
       check_field(
           input, report,
           {name, field, "split", &ImageRecord::split, "what is tested was hardly seen", advice});

@@ -40,7 +40,24 @@ void check_list(const CheckInput& input, CheckReport& report, CheckLevel level, 
   report.add(level, what, unused, names.size(), "", std::vector<std::string>());
 }
 
+/// By classes.unlisted = "skip", which was meant once and may be of models that came later.
+void check_skipped(const CheckInput& input, CheckReport& report) {
+  if (input.setting("classes.unlisted") != "\"skip\"") return;
+  for (const Concern& concern : input.dataset.concerns) {
+    if (concern.name != "models_unlisted" || concern.count == 0) continue;
+    report.say(
+        CheckLevel::note,
+        fmt::format("{} of {} model files stand in no class file and are left out "
+                    "(classes.unlisted = \"skip\"): {}{}",
+                    concern.count, concern.of, fmt::join(concern.examples, ", "),
+                    concern.count > concern.examples.size()
+                        ? fmt::format(" and {} more", concern.count - concern.examples.size())
+                        : ""));
+  }
+}
+
 void check_unused(const CheckInput& input, CheckReport& report) {
+  check_skipped(input, report);
   check_list(input, report, CheckLevel::warning, "models.files", &ImageRecord::model,
              "models of the recipe are in no image");
   check_list(input, report, CheckLevel::note, "materials.files", &ImageRecord::material,

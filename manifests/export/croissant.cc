@@ -111,7 +111,9 @@ json split_set(const ExportInput& input) {
   json rows = json::array();
   for (const auto& [split, count] : input.splits)
     rows.push_back({{"splits/name", split},
-                    {"splits/url", split == "test" ? "cr:TestSplit" : "cr:TrainingSplit"}});
+                    {"splits/url", split == "test"  ? "cr:TestSplit"
+                                   : split == "val" ? "cr:ValidationSplit"
+                                                    : "cr:TrainingSplit"}});
   const auto field = [](const char* name, const char* type) {
     return json{{"@type", "cr:Field"},
                 {"@id", std::string("splits/") + name},

@@ -162,10 +162,11 @@ std::string Export::split_of(const ImageRecord& image) const {
 
 /// A split names files and folders.
 void check_split(const ImageRecord& image) {
-  const bool known = image.split.empty() || image.split == "train" || image.split == "test";
+  const bool known = image.split.empty() || image.split == "train" || image.split == "val" ||
+                     image.split == "test";
   if (!known)
-    fail(ErrorKind::asset, "the image {}: wanted the split train, test or none, got {:?}", image.id,
-         image.split);
+    fail(ErrorKind::asset, "the image {}: wanted the split train, val, test or none, got {:?}",
+         image.id, image.split);
 }
 
 void Export::choose_classes() {

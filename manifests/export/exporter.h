@@ -30,7 +30,7 @@ struct ExportImage {
   ImageRecord record;
   /// "mug-1-3": one name for all formats, of no dot, slash or blank, no two images' the same.
   std::string key;
-  std::string split;  ///< "train", "test"; "train" in a dataset that has no splits
+  std::string split;  ///< "train", "val", "test"; "train" in a dataset that has no splits
   int label = 0;      ///< of ExportInput::classes; -1 where it has no class
 };
 

@@ -126,12 +126,14 @@ std::string hub_lines(const ExportInput& input, const std::vector<ParquetFile::C
   for (const ParquetFile::Column& column : columns)
     features.push_back(hub_feature(column, input, named_labels));
   std::uint64_t all = 0;
-  for (const auto& [split, images] : input.splits) {
-    const auto at = bytes.find(split);
+  for (const auto& [own_name, images] : input.splits) {
+    // What the library makes of folders and files called val.
+    const std::string split = own_name == "val" ? "validation" : own_name;
+    const auto at = bytes.find(own_name);
     const std::uint64_t size = at == bytes.end() ? 0 : at->second;
     all += size;
     splits.push_back({{"name", split}, {"num_bytes", size}, {"num_examples", images}});
-    files.push_back({{"split", split}, {"path", paths.at(split)}});
+    files.push_back({{"split", split}, {"path", paths.at(own_name)}});
   }
   return fmt::format(
       "dataset_info: {}\nconfigs: {}\n",

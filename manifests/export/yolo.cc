@@ -9,6 +9,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <initializer_list>
+
 namespace ds {
 namespace {
 
@@ -37,16 +40,21 @@ void Yolo::add(const ExportImage& image) {
 
 /// Without "path", which would count from the reader's working folder. Readers want train and val.
 void Yolo::finish() {
-  const std::string first =
-      input_.splits.contains("train") ? "train" : input_.splits.begin()->first;
-  const std::string last = input_.splits.contains("test") ? "test" : input_.splits.rbegin()->first;
-  if (first != last && last == "test")
-    to_.note("data.yaml names the test split for val too, which readers want");
-  if (first == last)
+  // In place of one that is not there stands what is nearest to its use.
+  const auto there = [&](std::initializer_list<const char*> splits) {
+    return std::string(*std::find_if(splits.begin(), splits.end(), [&](const char* split) {
+      return input_.splits.contains(split);
+    }));
+  };
+  const std::string train = there({"train", "val", "test"}), val = there({"val", "test", "train"});
+  if (input_.splits.size() == 1)
     to_.note(
-        fmt::format("there is one split only: data.yaml names {} for train and for val", first));
-  std::string text = fmt::format("train: images/{}\nval: images/{}\n", first, last);
-  if (last == "test") text += "test: images/test\n";
+        fmt::format("there is one split only: data.yaml names {} for train and for val", train));
+  else if (train != "train" || val != "val")
+    to_.note(fmt::format("data.yaml names the {} split for {} too, which readers want",
+                         val == "val" ? train : val, val == "val" ? "train" : "val"));
+  std::string text = fmt::format("train: images/{}\nval: images/{}\n", train, val);
+  if (input_.splits.contains("test")) text += "test: images/test\n";
   text += "names:\n";
   for (std::size_t i = 0; i < input_.classes.size(); ++i)
     text += fmt::format("  {}: {}\n", i, canonical_json(input_.classes[i]));

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Datasets that are of no use are said to be so; cameras that fit leave no model cut off."""
 import json
+import re
 import shutil
 import struct
 import zlib
@@ -326,7 +327,18 @@ class ConcernsTest(TinyCase):
         self.assertNotIn("warning: 3 of 4", err)
         self.assertNotIn("warning: 1 of 3", err)
         self.assertIn("3 of 4 models", err)
-        self.assertRegex(err, r"stands? in no class file: tetra.ply; left out: a line for each in \S+ mends it")
+        skipped = r"1 of 2 model files stands in no class file: tetra.ply; left out: a line for each in \S+ mends it"
+        self.assertRegex(err, skipped)
+        self.assertEqual(json.loads((self.out / "manifest/dataset.json").read_text())["concerns"]["models_unlisted"]["count"], 1)
+        for verb in (["plan"], ["build", "-n"], ["build"]):
+            for how in ([], ["--json"]):
+                run = self.run_it(*verb, self.recipe, "-o", self.out, *allowed, *how)
+                self.assertEqual(len(re.findall(skipped, run.err)), 1, run)
+                if how:
+                    self.assertEqual(run.json["concerns"]["models_unlisted"], 1)
+        run = self.run_it("check", self.out, "--only", "unused")
+        self.assertIn("1 of 2 model files stand in no class file and are left out", run.out, run)
+        self.assertEqual(run.code, 0, run)
 
     def test_a_build_that_is_cut_short_counts_what_it_made(self):
         (self.tiny / "train.cla").write_text("PSB 1\n3 2\n\nbox 0 1\nbox\n\nsolid 0 1\ntetra\n\nship 0 0\n")

@@ -272,7 +272,33 @@ class DistractorsTest(TinyCase):
         self.assertEqual(counts["concerns"]["distractors_unplaced"], IMAGES)
         self.assertNotIn("objects", self.records()[0])
         run = self.run_it("build", self.recipe, "-o", self.out, "--set", "distractors.place_m={disc=0.01}", "--set", "outputs.image=false")
-        self.assertIn("8 of 8 images show fewer distractors than were drawn, for want of places: box.off/0 (", run.err)
+        self.assertIn("8 of 8 images show fewer distractors than were drawn, for want of places or of other models: box.off/0 (", run.err)
+
+    def test_none_is_the_images_own_model(self):
+        self.edit("recipe.toml", 'dir = "others"', 'dir = "{models}"')
+        (self.tiny / "models/third.off").write_text((self.tiny / "models/box.off").read_text().replace("-1 -1 -2", "-1 -1 -3"))
+        # The box again, by another name and in another form of text: one mesh.
+        (self.tiny / "models/again.off").write_text((self.tiny / "models/box.off").read_text().replace("OFF\n", "OFF\n# again\n"))
+        own = {"box.off": "box.off again.off", "again.off": "box.off again.off", "third.off": "third.off", "tetra.ply": "tetra.ply"}
+        small = ("--set", "outputs.image=false", "--set", "distractors.count=6", "--set", "distractors.size_m=0.02")
+        self.build(*small)
+        others = {(r["id"], o["id"]): o["model"] for r in self.records() for o in r["objects"]}
+        self.assertGreater(len(others), 40)
+        for (image, _), model in others.items():
+            self.assertNotIn(model, own[image.split("/")[0]].split(), image)
+        self.build(*small, "--set", "distractors.own=true")
+        free = {(r["id"], o["id"]): o["model"] for r in self.records() for o in r["objects"]}
+        redrawn = {key for key, model in free.items() if model in own[key[0].split("/")[0]].split()}
+        self.assertGreater(len(redrawn), 5)
+        self.assertEqual({key: model for key, model in free.items() if key not in redrawn},
+                         {key: model for key, model in others.items() if key in free and key not in redrawn})
+
+    def test_what_is_drawn_is_counted_by_what_it_is_drawn_for(self):
+        run = self.run_it("plan", self.recipe, "-o", self.out, "--draws")
+        shown = self.run_it("plan", self.recipe, "-o", self.out, "--draws", "--json").json["draws"]["distractors.size_m"]["count"]
+        self.assertGreater(shown, IMAGES)
+        self.assertRegex(run.out, rf"distractors\.size_m +\S.* of {shown} distractors\n")
+        self.assertRegex(run.out, rf"distractors\.count +\S.* of {IMAGES} images\n")
 
     def test_masks_are_made_anew_for_shapes_and_pictures_alone_for_colours(self):
         self.build("--set", "distractors.count=2")
@@ -285,15 +311,20 @@ class DistractorsTest(TinyCase):
         self.assertEqual(run.code, 0, run)
 
     def test_models_of_the_recipe_stay_in_their_split(self):
-        (self.tiny / "classes.csv").write_text(TABLE)
+        table = TABLE + "brick.off,solid/box,train\nwedge.off,solid/spike,test\n"
+        (self.tiny / "classes.csv").write_text(table)
+        box = (self.tiny / "models/box.off").read_text()
+        for name, height in (("brick.off", 3), ("wedge.off", 4)):
+            (self.tiny / "models" / name).write_text(box.replace("-1 -1 -2", f"-1 -1 -{height}"))
+        other = {"box.off": "brick.off", "brick.off": "box.off", "tetra.ply": "wedge.off", "wedge.off": "tetra.ply"}
         self.edit("recipe.toml", "[materials]", CLASSES + "[materials]")
         self.edit("recipe.toml", 'dir = "others"', 'dir = "{models}"')
         self.build("--set", "distractors.count=3")
         for record in self.records():
             for o in record["objects"]:
-                self.assertEqual((o["model"], o["class_path"], o["class_id"]), (record["model"], record["class_path"], record["class_id"]))
+                self.assertEqual((o["model"], o["class_path"], o["class_id"]), (other[record["model"]], record["class_path"], record["class_id"]))
         # A class that is renamed is told without a picture made anew.
-        (self.tiny / "classes.csv").write_text(TABLE.replace("spike", "thorn"))
+        (self.tiny / "classes.csv").write_text(table.replace("spike", "thorn"))
         counts = self.build("--set", "distractors.count=3")
         self.assertEqual(counts["built"], 0)
         self.assertEqual({o["class_path"] for r in self.records() for o in r["objects"]}, {"solid/box", "solid/thorn"})

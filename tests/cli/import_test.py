@@ -122,6 +122,86 @@ class ImportTest(TinyCase):
         self.assertNotIn("split =", (self.to / "recipe.toml").read_text())
         self.assertEqual({(m, s) for m, _, s, _ in self.built()}, {("a.off", "train"), ("b.off", "test")})
 
+    def test_folders_of_splits_by_all_their_names(self):
+        for names in (("train", "val", "test"), ("training", "validation", "testing"), ("Train", "dev", "eval")):
+            self.put({f"{name}/{kind}/{i}{name}.off": self.box for i, name in enumerate(names) for kind in ("car", "mug")})
+            run = self.run_it("import", self.models, "-o", self.to, "--classes", "folders")
+            self.assertEqual(run.code, 0, run)
+            self.assertIn("splits are from the folders", run.out)
+            for name, split in zip(names, ("train", "val", "test")):
+                self.assertIn(name if name == split else f"{name} ({split})", run.out)
+                self.assertIn(f"2 {split}", run.err + run.out)
+            self.assertEqual({(c, s) for _, c, s in self.rows()[1:]}, {(c, s) for c in ("car", "mug") for s in ("train", "val", "test")})
+            self.assertNotIn("split =", (self.to / "recipe.toml").read_text())
+            self.assertEqual({s for _, _, s, _ in self.built()}, {"train", "val", "test"})
+            shutil.rmtree(self.models)
+            shutil.rmtree(self.to)
+            shutil.rmtree(self.out)
+
+    def test_folders_that_are_no_splits(self):
+        self.put({"car/a.off": self.box, "dev/b.off": self.box, "test/c.off": self.box})
+        told = self.take_in(self.models)
+        self.assertEqual((told["classes"], told["splits"]), (["car", "dev"], {"": 2, "test": 1}))
+        self.assertEqual((told["split_folders"], told["class_folders"]), ({"test": "test"}, ["dev"]))
+        shutil.rmtree(self.to)
+        told = self.take_in(self.models, "--no-split-folders")
+        self.assertEqual((told["classes"], told["splits"]), (["car", "dev", "test"], {"": 3}))
+        self.assertEqual((told["split_folders"], told["class_folders"]), ({}, ["dev", "test"]))
+
+    def test_what_is_new_is_added_and_nothing_else_touched(self):
+        self.put({"car/a.off": self.box, "car/b.off": self.box, "mug/c.ply": self.tetra, "mug/bad.off": "OFF\nbroken\n"})
+        self.take_in(self.models)
+        again = self.run_it("import", self.models, "-o", self.to)
+        self.assertEqual(again.code, 2, again)
+        self.assertIn("--update", again.err)
+        # By hand: a comment in the recipe, another class, a model taken out, a column more, a licence.
+        recipe = (self.to / "recipe.toml").read_text() + "# mine\n"
+        (self.to / "recipe.toml").write_text(recipe)
+        (self.to / "classes.csv").write_text("name,note,class,split\na.off,red,fast car,\nc.ply,,mug,")
+        (self.to / "ids.txt").write_text("mug\nfast car\n")
+        materials = sorted((self.to / "materials").iterdir())
+        (self.models / "mug/c.ply").unlink()
+        self.put({"boat/d.off": self.box, "car/e.off": self.box, "mug/bad.off": self.box})
+        told = self.take_in(self.models, "--update")
+        self.assertEqual((told["models"], told["kept"], told["classes"]), (3, 1, ["boat", "car", "mug"]))
+        self.assertEqual((told["new_classes"], told["taken_out"], told["gone"]), (["boat", "car"], ["car/b.off"], ["c.ply"]))
+        self.assertEqual((self.to / "classes.csv").read_text(),
+                         "name,note,class,split\na.off,red,fast car,\nc.ply,,mug,\nd.off,,boat,\ne.off,,car,\nbad.off,,mug,\n")
+        self.assertEqual((self.to / "ids.txt").read_text(), "mug\nfast car\nboat\ncar\n")
+        self.assertEqual(((self.to / "recipe.toml").read_text(), sorted((self.to / "materials").iterdir())), (recipe, materials))
+        self.assertEqual({(m, c, i) for m, c, _, i in self.built()},
+                         {("a.off", "fast car", 1), ("d.off", "boat", 2), ("e.off", "car", 3), ("bad.off", "mug", 0)})
+        before = (self.to / "classes.csv").read_bytes()
+        told = self.take_in(self.models, "--update")
+        self.assertEqual((told["models"], told["kept"], told["new_classes"]), (0, 4, []))
+        self.assertEqual((self.to / "classes.csv").read_bytes(), before)
+
+    def test_an_update_of_copies_and_of_splits(self):
+        self.put({"train/car/a.off": self.box, "test/car/b.off": self.box})
+        self.take_in(self.models, "--copy")
+        self.put({"val/car/c.off": self.box, "test/mug/d.off": self.box})
+        self.assertEqual(self.take_in(self.models, "--update")["splits"], {"test": 1, "val": 1})
+        shutil.rmtree(self.models)
+        self.assertEqual({(m, c, s) for m, c, s, _ in self.built()},
+                         {("a.off", "car", "train"), ("b.off", "car", "test"), ("c.off", "car", "val"), ("d.off", "mug", "test")})
+
+    def test_an_update_that_cannot_be(self):
+        self.put({"car/a.off": self.box})
+        run = self.run_it("import", self.models, "-o", self.to, "--update")
+        self.assertEqual(run.code, 2)
+        self.assertIn("--update wants the folder of an import, found no recipe.toml in it", run.err)
+        self.take_in(self.models)
+        other = self.folder / "other"
+        (other / "car").mkdir(parents=True)
+        (other / "car/z.off").write_text(self.box)
+        run = self.run_it("import", other, "-o", self.to, "--update")
+        self.assertEqual(run.code, 2)
+        self.assertIn("takes its models from another folder (models.dir)", run.err)
+        self.put({"mug/a.off": self.box})
+        run = self.run_it("import", self.models, "-o", self.to, "--update")
+        self.assertEqual(run.code, 2)
+        self.assertIn('models.names = "path"', run.err)
+
     def test_the_benchmark_as_published(self):
         for number in (0, 7, 101, 1298):
             self.put({f"db/{number // 100}/m{number}/m{number}.off": self.box,
@@ -156,7 +236,7 @@ class ImportTest(TinyCase):
         self.assertEqual(run.code, 2)
         self.assertIn("holds a recipe.toml already", run.err)
         (self.to / "classes.csv").write_text("name,class\n")
-        self.assertIn("or add the lines of new models to its classes.csv",
+        self.assertIn("or --update, which adds new models to its classes.csv",
                       self.run_it("import", self.models, "-o", self.to).err)
         (self.to / "classes.csv").unlink()
         self.assertEqual((self.to / "recipe.toml").read_text(), "mine")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Exports as their real consumers read them: pycocotools, Hugging Face datasets, mlcroissant, webdataset."""
 import contextlib
+import csv
 import io
 import json
 import logging
@@ -18,6 +19,7 @@ import mlcroissant
 import numpy
 import pyarrow.parquet as parquet
 import webdataset
+import yaml
 from harness import IMAGES, TinyCase, main
 from huggingface_hub import DatasetCard
 from PIL import Image
@@ -257,6 +259,54 @@ jpeg_quality = { integer = [60, 95] }
             self.assertFalse(lines.is_valid({**wanted, "more": 1}))
             self.assertFalse(lines.is_valid({**wanted, "class_id": "1"}))
             validator("dataset").validate(json.loads((self.out / "manifest/dataset.json").read_text()))
+
+    def test_a_validation_split(self):
+        """train, val and test as each reader wants them: as the manifest has them, picture by picture."""
+        for copy in ("box2.off", "box3.off"):
+            (self.tiny / "models" / copy).write_text((self.tiny / "models/box.off").read_text().replace("-1 -1 -2", "-1 -1 -3"))
+        (self.tiny / "all.csv").write_text("name,class,split\nbox,solid/box,train\nbox2,solid/box,validation\nbox3,solid/box,test\ntetra,solid/spike,val\n")
+        self.edit("recipe.toml", 'train = "train.cla"\ntest = "test.cla"\n', 'from = "all.csv"\n')
+        self.build()
+        self.records = {record["id"]: record for record in
+                        map(json.loads, (self.out / "manifest/images.jsonl").read_text().splitlines())}
+        wanted = {split: {id for id, record in self.records.items() if record["split"] == split} for split in ("train", "val", "test")}
+        self.assertEqual([len(wanted[split]) for split in wanted], [IMAGES // 2, IMAGES, IMAGES // 2])
+        named = {"train": wanted["train"], "validation": wanted["val"], "test": wanted["test"]}  # as the library calls them
+
+        for format in ("imagefolder", "parquet"):
+            self.export(format)
+            for loaded in (self.load(format, data_dir=str(self.to)), self.load(str(self.to))):
+                self.assertEqual({split: set(rows["id"]) for split, rows in loaded.items()}, named, format)
+        self.export("croissant")
+        dataset = mlcroissant.Dataset(jsonld=str(self.to / "croissant.json"))
+        self.assertEqual(set(dataset.metadata.ctx.issues.errors), set())
+        urls = {row["splits/name"]: row["splits/url"] for row in dataset.records("splits")}
+        self.assertEqual({str(name): str(url).rpartition(":")[2].rpartition("/")[2] for name, url in urls.items()},
+                         {"train": "TrainingSplit", "val": "ValidationSplit", "test": "TestSplit"})
+        logging.disable(logging.WARNING)
+        self.addCleanup(logging.disable, logging.NOTSET)
+        for split, ids in wanted.items():
+            rows = dataset.records("images", filters={"images/split": split})
+            self.assertEqual({row["images/id"].decode() for row in rows}, ids)
+        self.export("webdataset")
+        for split, ids in wanted.items():
+            samples = webdataset.WebDataset(str(self.to / f"tiny-{split}-000000.tar"), shardshuffle=False).decode("rgb8")
+            self.assertEqual({sample["json"]["id"] for sample in samples}, ids)
+        self.export("coco")
+        for split, ids in wanted.items():
+            with contextlib.redirect_stdout(io.StringIO()):
+                coco = COCO(str(self.to / f"annotations/instances_{split}.json"))
+            self.assertEqual({image["dsbuild_id"] for image in coco.dataset["images"]}, ids)
+        self.export("yolo")
+        data = yaml.safe_load((self.to / "data.yaml").read_text())
+        for split, ids in wanted.items():
+            pictures = sorted((self.to / data[split]).iterdir())
+            self.assertEqual(len(pictures), len(ids))
+            self.assertEqual({tuple(numpy.asarray(Image.open(picture)).ravel()) for picture in pictures},
+                             {tuple(self.picture(self.records[id]).ravel()) for id in ids})
+        only = self.run_it("export", self.out, "--format", "csv", "-o", self.folder / "part", "--split", "val")
+        self.assertEqual(only.code, 0, only)
+        self.assertEqual({row["id"] for row in csv.DictReader((self.folder / "part/images.csv").open())}, wanted["val"])
 
     def test_webdataset(self):
         self.export("webdataset")

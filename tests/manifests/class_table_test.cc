@@ -38,6 +38,13 @@ TEST(ClassTable, ReadsColumnsInAnyOrderAndPassesOverOthers) {
   EXPECT_THAT(rows("name,class,split\n"), ElementsAre());
 }
 
+TEST(ClassTable, TakesWhatPeopleCallSplits) {
+  EXPECT_THAT(rows("name,class,split\na,c,val\nb,c,Validation\nd,c,dev\ne,c,valid\nf,c,training\n"
+                   "g,c,TRAIN\nh,c,testing\ni,c,eval\nj,c,evaluation\n"),
+              ElementsAre("a|c|val", "b|c|val", "d|c|val", "e|c|val", "f|c|train", "g|c|train",
+                          "h|c|test", "i|c|test", "j|c|test"));
+}
+
 TEST(ClassTable, TakesQuotesLineEndsEmptyLinesAndAByteOrderMark) {
   EXPECT_THAT(
       rows("\xef\xbb\xbf\"name\",class\r\n\r\n\"a \"\"b\"\", c\",\"d\"\r\"two\nlines\",e\n\n"),
@@ -46,11 +53,11 @@ TEST(ClassTable, TakesQuotesLineEndsEmptyLinesAndAByteOrderMark) {
 
 TEST(ClassTable, SaysAllThatIsWrongWithItsLine) {
   const std::string found = findings(
-      "name,class,split\n,a,train\nb,a//c,\n\"c\n\",..,\nd,a\ne,a,val\nb,0,test\nf,/a,\ng,a/,\n");
+      "name,class,split\n,a,train\nb,a//c,\n\"c\n\",..,\nd,a\ne,a,vale\nb,0,test\nf,/a,\ng,a/,\n");
   for (const char* wanted :
        {"c.csv:2: the name is empty", "c.csv:3: a class must be names with / between",
         "c.csv:4: a class must be names", "c.csv:6: must have 3 fields as the first line, found 2",
-        "c.csv:7: split must be train, test or empty, got \"val\"",
+        "c.csv:7: split must be train, val, test or empty, got \"vale\"",
         "c.csv:8: model b stands twice, first in line 3", "c.csv:8: a class must be names",
         "c.csv:9: a class must be names", "c.csv:10: a class must be names"})
     EXPECT_THAT(found, HasSubstr(wanted));

@@ -125,10 +125,10 @@ TEST_F(RecipeClassesTest, ExcludeASplitByHash) {
   EXPECT_EQ(folder_.findings(both("classes.split.test = 0.5")),
             "r.toml:6:22: classes.split.test must not be given together with classes.train or "
             "classes.test");
-  EXPECT_EQ(folder_.findings("classes.split = { test = 1.5, by = \"class\" }"),
+  EXPECT_EQ(folder_.findings("classes.split = { test = 1.5, by = \"fold\" }"),
             "r.toml:4:26: classes.split.test must be a number in [0, 1], got 1.5\n"
-            "r.toml:4:36: classes.split.by must be \"model\" or \"material\" or \"environment\" or "
-            "\"view\", got \"class\"");
+            "r.toml:4:36: classes.split.by must be \"model\" or \"class\" or \"material\" or "
+            "\"environment\" or \"view\", got \"fold\"");
 }
 
 TEST_F(RecipeClassesTest, ComeFromFolders) {
@@ -149,6 +149,37 @@ TEST_F(RecipeClassesTest, ComeFromFolders) {
   EXPECT_EQ(folder.findings("classes.from = \"folder\""),
             "r.toml:4:16: classes.from wants models.dir and models.recursive = true: classes are "
             "the folders in it");
+}
+
+TEST_F(RecipeClassesTest, FoldersTellSplitsWhereAllBesideThemDo) {
+  const std::string from =
+      "models.recursive = true\nmodels.names = \"path\"\nclasses.from = \"folders\"\n";
+  const RecipeFolder sets;
+  for (const char* model : {"training/car/a.off", "Validation/car/b.off", "test/mug/c.off",
+                            "test/d.off", "dev/x/dev/e.off"})
+    sets.add(std::string("models/") + model);
+  const auto labels = labels_of(sets.read(from));
+  EXPECT_EQ(labels.at("training/car/a.off"), "car train");
+  EXPECT_EQ(labels.at("Validation/car/b.off"), "car val");
+  EXPECT_EQ(labels.at("test/mug/c.off"), "mug test");
+  EXPECT_EQ(labels.at("test/d.off"), " test") << "of no class";
+  EXPECT_EQ(labels.at("dev/x/dev/e.off"), "x/dev val") << "the first folder";
+  EXPECT_EQ(labels_of(sets.read(from + "classes.split_folders = false")).at("test/mug/c.off"),
+            "test/mug ");
+  // Beside cars, dev and val are things; train and test stay what they were.
+  const RecipeFolder things;
+  for (const char* model : {"car/a.off", "dev/b.off", "val/c.off", "test/car/d.off",
+                            "chair/valid/e.off", "chair/train/f.off"})
+    things.add(std::string("models/") + model);
+  const auto of_things = labels_of(things.read(from));
+  EXPECT_EQ(of_things.at("dev/b.off"), "dev ");
+  EXPECT_EQ(of_things.at("val/c.off"), "val ");
+  EXPECT_EQ(of_things.at("test/car/d.off"), "car test");
+  EXPECT_EQ(of_things.at("chair/valid/e.off"), "chair val");
+  EXPECT_EQ(of_things.at("chair/train/f.off"), "chair train");
+  EXPECT_EQ(things.findings("classes.split_folders = true"),
+            "r.toml:4:25: classes.split_folders has no effect without classes.from = \"folder\" or "
+            "\"folders\"");
 }
 
 TEST_F(RecipeClassesTest, ComeFromATableOrOneClassFile) {

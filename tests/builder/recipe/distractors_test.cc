@@ -131,7 +131,49 @@ TEST_F(DistractorsTest, OfTheRecipeAreOfTheImagesOwnSplitAndFold) {
       EXPECT_EQ(groups.at(*one.model.name), groups.at(*image.model_name)) << image.id;
       seen.insert(*one.model.name);
     }
-  EXPECT_EQ(seen.size(), read.models.size());
+  std::map<std::pair<std::string, std::optional<std::uint64_t>>, std::size_t> sizes;
+  for (const auto& [model, group] : groups)
+    ++sizes[group];
+  std::size_t wanted = 0;  // one alone in its group is beside no other
+  for (const auto& [group, size] : sizes)
+    wanted += size > 1 ? size : 0;
+  EXPECT_EQ(seen.size(), wanted);
+  EXPECT_GT(wanted, 6U);
+}
+
+/// Where chance would take the image's own model the next by hash stands in, and nothing else moves.
+TEST_F(DistractorsTest, AreNotTheImagesOwnModel) {
+  for (const char* name : {"bus", "cup", "desk"})
+    folder_.add(std::string("models/") + name + ".off");
+  const std::vector<std::string> own{"distractors.dir=\"{models}\"", "distractors.count=5"};
+  std::vector<std::string> with = own;
+  with.emplace_back("distractors.own=true");
+  const auto allowed = shown(recipe("", with)), others = shown(recipe("", own));
+  ASSERT_EQ(allowed.size(), others.size());
+  std::size_t redrawn = 0;
+  for (const auto& [name, what] : allowed) {
+    const std::string model = name.substr(0, name.find('/'));
+    const bool is_own = std::get<0>(what) == model;
+    redrawn += is_own ? 1U : 0U;
+    EXPECT_NE(std::get<0>(others.at(name)), model) << name;
+    EXPECT_EQ(others.at(name) != what, is_own) << name;
+    EXPECT_EQ(std::get<1>(others.at(name)), std::get<1>(what)) << "its material stays";
+    EXPECT_EQ(std::get<2>(others.at(name)), std::get<2>(what)) << "and what is drawn";
+  }
+  EXPECT_GT(redrawn, allowed.size() / 12);  // of 6 models each
+  EXPECT_LT(redrawn, allowed.size() / 3);
+  // It is the file that counts, whatever the folder.
+  const Recipe same =
+      recipe("", {"distractors.dir=\"" + (folder_.path() / "models").string() + "\""});
+  ASSERT_FALSE(same.distractors.of_recipe);
+  for (const ImageSpec& image : expand(same))
+    for (const Distractor& one : draw_distractors(image, same))
+      EXPECT_NE(*one.model.file, *image.model_file);
+  // One model alone has none beside it.
+  const Recipe alone = recipe(
+      "", {own[0], "models.files=[\"" + (folder_.path() / "models/bus.off").string() + "\"]"});
+  for (const ImageSpec& image : expand(alone))
+    EXPECT_TRUE(draw_distractors(image, alone).empty());
 }
 
 TEST_F(DistractorsTest, ShowTheirOwnMaterialsWhereModelsDo) {

@@ -22,6 +22,7 @@
 namespace ds {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr std::string_view k_lamps = R"(
@@ -222,7 +223,11 @@ TEST_F(LightsTest, EveryTypeTakesADistributionForEachOfItsNumbers) {
 
 TEST_F(LightsTest, WhatIsWrongWithThemIsSaidAtItsPlace) {
   const auto said = [&](const std::string& text) { return folder_.findings(text); };
-  EXPECT_THAT(said("[lights]\ntype = \"point\"\n"), HasSubstr("lights must be a list of tables"));
+  for (const char* text : {"[lights]\ntype = \"point\"\n", "lights = { type = \"point\" }\n",
+                           "[lights.lamp]\ntype = \"point\"\n"})
+    EXPECT_THAT(said(text), AllOf(HasSubstr("lights must be a list of tables"),
+                                  HasSubstr("; each begins with [[lights]], two brackets")))
+        << text;
   EXPECT_THAT(said("lights = [3]\n"), HasSubstr("lights must be a list of tables, got 3"));
   EXPECT_THAT(said("[[lights]]\ngain = 2\n"),
               HasSubstr("lights[0].type must be given: one of point, spot, "));

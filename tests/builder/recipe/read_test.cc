@@ -12,8 +12,10 @@ namespace ds {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 std::vector<std::string> names(const std::vector<fs::path>& paths) {
   std::vector<std::string> all;
@@ -183,6 +185,19 @@ TEST_F(RecipeReadTest, ReportsMissingSections) {
 
 TEST_F(RecipeReadTest, ReportsWrongShapes) {
   EXPECT_EQ(folder_.findings("camera = 3"), "r.toml:4:10: camera must be a table of keys, got 3");
+  // The right word in another section, but of another kind of value.
+  EXPECT_THAT(folder_.findings("classes.val = \"val.cla\""),
+              AllOf(HasSubstr("classes.val is no key of a recipe; classes has train, test"),
+                    Not(HasSubstr("did you mean"))));
+  EXPECT_THAT(folder_.findings("outputs.width = 64"), HasSubstr("did you mean engine.width?"));
+  EXPECT_EQ(folder_.findings("[[camera]]\nfov_deg = 40"),
+            "r.toml:4:1: camera must be one [camera], a table of keys, got [{fov_deg = 40}], as "
+            "[[camera]] makes it");
+  EXPECT_THAT(folder_.findings("[[classes.split]]\ntest = 0.5"),
+              HasSubstr("classes.split must be one [classes.split], a table of keys"));
+  EXPECT_THAT(folder_.findings("[[materials.vary]]\n\"a.kd\" = 0.5"),
+              HasSubstr("; it is [materials.vary], not [[materials.vary]]"));
+  EXPECT_EQ(folder_.findings("camera = []"), "r.toml:4:10: camera must be a table of keys, got []");
   EXPECT_EQ(folder_.findings("dataset.name = \"../x\""),
             "r.toml:4:16: dataset.name must be a string of letters, digits and . _ - that starts "
             "with no dot, got "

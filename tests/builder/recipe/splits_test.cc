@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "builder/recipe/splits.h"
 
+#include "builder/recipe/seeded_hash.h"
 #include "tests/builder/recipe_folder.h"
 
 #include <gmock/gmock.h>
@@ -40,6 +41,16 @@ Recipe recipe_of(int classes) {
   recipe.environments = {"/e/attic", "/e/garden"};
   recipe.cameras.resize(3);
   recipe.view_names = {"0", "1", "2"};
+  return recipe;
+}
+
+/// With one more, of that class.
+Recipe with_model(Recipe recipe, const std::string& name, const std::string& path) {
+  std::vector<LabelledModel> labels{{name, {path, ""}, {}}};
+  for (const ModelFile& model : recipe.models)
+    labels.push_back({model.name, *recipe.labels.find(model.name), {}});
+  recipe.labels = Labels(labels);
+  recipe.models.push_back({name, "/models/" + name});
   return recipe;
 }
 
@@ -89,13 +100,7 @@ TEST(Splits, OneModelMoreMovesAtMostOneOfItsClass) {
     recipe.split.test = 0.2;
     recipe.split.stratified = true;
     const auto before = splits_of(recipe);
-    std::vector<LabelledModel> labels;
-    for (const ModelFile& model : recipe.models)
-      labels.push_back({model.name, *recipe.labels.find(model.name), {}});
-    const std::string added = fmt::format("x{}.off", more);
-    labels.push_back({added, {"c03", ""}, {}});
-    recipe.labels = Labels(labels);
-    recipe.models.push_back({added, "/models/x.off"});
+    recipe = with_model(recipe, fmt::format("x{}.off", more), "c03");
     std::set<std::string> moved;
     for (const ImageSpec& image : expand(recipe))
       if (const auto at = before.find(image.id); at != before.end() && at->second != *image.split)
@@ -137,6 +142,177 @@ TEST(Splits, HeldOutAreTest) {
     EXPECT_EQ(*image.split, *image.environment_name == "attic" ? "test" : "train");
 }
 
+/// Models by split.
+std::map<std::string, std::set<std::string>> models_of(const Recipe& recipe) {
+  std::map<std::string, std::set<std::string>> models;
+  for (const ImageSpec& image : expand(recipe))
+    models[image.split].insert(image.model_name);
+  return models;
+}
+
+TEST(Splits, ValTakesNothingFromTest) {
+  Recipe recipe = recipe_of(40);  // 820 models
+  for (const bool stratified : {false, true}) {
+    recipe.split = {};
+    recipe.split.stratified = stratified;
+    recipe.split.test = 0.15;
+    const auto two = models_of(recipe);
+    recipe.split.val = 0.15;
+    auto three = models_of(recipe);
+    EXPECT_EQ(three.at("test"), two.at("test"));
+    EXPECT_EQ(three.size(), 3U);
+    // 5 standard deviations of a binomial(820, 0.15)
+    EXPECT_NEAR(static_cast<double>(three.at("val").size()), 123, 51);
+    three.at("val").merge(three.at("train"));
+    EXPECT_EQ(three.at("val"), two.at("train"));
+  }
+}
+
+/// The rule as it is documented, from the hash itself.
+TEST(Splits, ByHashAreIntervalsOfIt) {
+  Recipe recipe = recipe_of(20);
+  recipe.split.test = 0.2;
+  recipe.split.val = 0.3;
+  for (const ImageSpec& image : expand(recipe)) {
+    const double at = static_cast<double>(seeded_hash(5, "split", {*image.model_name}) >> 11U) /
+                      9007199254740992.0;
+    EXPECT_EQ(*image.split, at < 0.2 ? "test" : at < 0.5 ? "val" : "train");
+  }
+}
+
+TEST(Splits, StratifiedTakesThreeSharesOfEachClass) {
+  Recipe recipe = recipe_of(30);
+  recipe.split.stratified = true;
+  recipe.split.test = recipe.split.val = 0.15;
+  std::map<std::string, std::map<std::string, std::set<std::string>>> of_class;
+  for (const ImageSpec& image : expand(recipe))
+    of_class[image.class_path][image.split].insert(image.model_name);
+  int size = 0;
+  for (auto& [path, models] : of_class) {
+    ++size;  // c01 has one, c02 two, ...
+    double test = std::floor(0.15 * size + 0.5), both = std::floor(0.3 * size + 0.5);
+    if (size > 1) test = std::max(test, 1.0);
+    if (size > 2) both = std::max(both, test + 1);
+    both = std::max(both, test);
+    EXPECT_EQ(models["test"].size(), test) << path;
+    EXPECT_EQ(models["val"].size(), both - test) << path;
+    EXPECT_EQ(models["train"].size(), size - both) << path;
+  }
+  EXPECT_EQ(size, 30);
+}
+
+TEST(Splits, OneModelMoreMovesOneOfEachSplitAtMost) {
+  for (int more = 0; more < 50; ++more) {
+    Recipe recipe = recipe_of(12);
+    recipe.split.test = recipe.split.val = 0.2;
+    recipe.split.stratified = true;
+    const auto before = splits_of(recipe);
+    recipe = with_model(recipe, fmt::format("x{}.off", more), "c11");
+    std::map<std::string, std::set<std::string>> moved;
+    for (const ImageSpec& image : expand(recipe))
+      if (const auto at = before.find(image.id); at != before.end() && at->second != *image.split) {
+        moved[at->second].insert(image.model_name);
+        EXPECT_EQ(*image.class_path, "c11");
+      }
+    for (const auto& [split, models] : moved)
+      EXPECT_LE(models.size(), 1U) << split;
+  }
+}
+
+TEST(Splits, OfFewThingsHaveAllThree) {
+  for (const SplitBy by : {SplitBy::model_class, SplitBy::material, SplitBy::view})
+    for (int seed = 0; seed < 20; ++seed) {
+      Recipe recipe = recipe_of(4);  // 4 classes, 4 materials, 3 views
+      recipe.assign_materials = Assign::all;
+      recipe.seed = static_cast<std::uint64_t>(seed);
+      recipe.split.by = by;
+      recipe.split.test = 0.15;
+      recipe.split.val = 0.15;
+      std::map<std::string, std::set<std::string>> of_thing;
+      std::set<std::string> all;
+      for (const ImageSpec& image : expand(recipe)) {
+        of_thing[by == SplitBy::model_class ? *image.class_path
+                 : by == SplitBy::material  ? *image.material_name
+                                            : *image.view]
+            .insert(image.split);
+        all.insert(image.split);
+      }
+      EXPECT_EQ(all, (std::set<std::string>{"train", "val", "test"}));
+      for (const auto& [thing, splits] : of_thing)
+        EXPECT_EQ(splits.size(), 1U) << thing;
+    }
+}
+
+TEST(Splits, OfClassesAreTheModelsSplits) {
+  Recipe recipe = recipe_of(9);
+  recipe.split.by = SplitBy::model_class;
+  recipe.split.test = 0.3;
+  recipe.split.folds = 3;
+  const Splits splits(recipe);
+  std::map<std::string, std::optional<std::uint64_t>> folds;
+  for (const ImageSpec& image : expand(recipe)) {
+    EXPECT_EQ(splits.of_model(image.model_name).split, *image.split);
+    EXPECT_EQ(image.fold.has_value(), *image.split == "train");
+    EXPECT_EQ(folds.try_emplace(image.class_path, image.fold).first->second, image.fold);
+  }
+  // One class more moves no other.
+  const auto before = splits_of(recipe);
+  recipe = with_model(with_model(recipe, "x.off", "x"), "none.off", "");
+  for (const ImageSpec& image : expand(recipe))
+    if (const auto at = before.find(image.id); at != before.end()) {
+      EXPECT_EQ(at->second, *image.split);
+    } else if (*image.model_name == "none.off") {
+      EXPECT_EQ(*image.split, "") << "of no class";
+      EXPECT_FALSE(image.fold);
+    }
+}
+
+TEST(Splits, HeldOutMayBeBothAndLeaveValAShare) {
+  Recipe recipe = recipe_of(3);
+  recipe.split.by = SplitBy::material;
+  recipe.assign_materials = Assign::all;
+  recipe.split.held_out = {"gold"};
+  recipe.split.held_out_val = {"clay"};
+  for (const ImageSpec& image : expand(recipe))
+    EXPECT_EQ(*image.split, *image.material_name == "gold"   ? "test"
+                            : *image.material_name == "clay" ? "val"
+                                                             : "train");
+  recipe.split.held_out_val = {};
+  recipe.split.val = 0.3;
+  std::set<std::string> val;
+  for (const ImageSpec& image : expand(recipe)) {
+    EXPECT_EQ(*image.split == "test", *image.material_name == "gold");
+    if (*image.split == "val") val.insert(image.material_name);
+  }
+  EXPECT_TRUE(val.size() == 1 || val.size() == 2) << val.size();
+}
+
+TEST(Splits, ValTakesOfWhatFilesTrain) {
+  Recipe recipe = recipe_of(30);
+  std::vector<LabelledModel> labels;
+  for (const ModelFile& model : recipe.models) {
+    ModelLabel label = *recipe.labels.find(model.name);
+    label.split = labels.size() % 3 == 0 ? "test" : "train";
+    labels.push_back({model.name, label, {}});
+  }
+  recipe.labels = Labels(labels);
+  const auto told = models_of(recipe);
+  recipe.split.val = 0.2;
+  recipe.split.stratified = true;
+  auto dealt = models_of(recipe);
+  EXPECT_EQ(dealt.at("test"), told.at("test"));
+  std::map<std::string, std::pair<int, int>> of_class;  // all but test, val
+  for (const std::string& model : told.at("train")) {
+    auto& [all, val] = of_class[recipe.labels.find(model)->class_path];
+    ++all;
+    val += dealt.at("val").contains(model) ? 1 : 0;
+  }
+  for (const auto& [path, counts] : of_class) {
+    const double wanted = std::floor(0.2 * counts.first + 0.5);
+    EXPECT_EQ(counts.second, counts.first > 1 ? std::max(wanted, 1.0) : wanted) << path;
+  }
+}
+
 TEST(Splits, FoldsAreOfAllButTest) {
   Recipe recipe = recipe_of(40);  // 820 models
   recipe.split.folds = 5;
@@ -152,6 +328,7 @@ TEST(Splits, FoldsAreOfAllButTest) {
   for (const auto& [fold, count] : sizes)
     EXPECT_NEAR(count, 164, 57) << fold;  // 5 standard deviations of a binomial(820, 0.2)
   recipe.split.test = 0.5;
+  recipe.split.val = 0.1;
   for (const ImageSpec& image : expand(recipe)) {
     EXPECT_EQ(image.fold.has_value(), *image.split == "train");
     if (image.fold) {
@@ -304,8 +481,8 @@ TEST_F(SplitKeysTest, AreRead) {
 
 TEST_F(SplitKeysTest, ThatCannotBeMeantAreNamed) {
   EXPECT_EQ(folder_.findings("classes.split = { by = \"enviroment\", test = 0.5 }"),
-            "r.toml:4:24: classes.split.by must be \"model\" or \"material\" or \"environment\" or "
-            "\"view\", got \"enviroment\", did you mean \"environment\"?");
+            "r.toml:4:24: classes.split.by must be \"model\" or \"class\" or \"material\" or "
+            "\"environment\" or \"view\", got \"enviroment\", did you mean \"environment\"?");
   EXPECT_EQ(folder_.findings("classes.split = { by = \"environment\", held_out = [\"atic\"] }"),
             "r.toml:4:51: classes.split.held_out must name one of the recipe's environments, got "
             "\"atic\", did "
@@ -314,11 +491,11 @@ TEST_F(SplitKeysTest, ThatCannotBeMeantAreNamed) {
       folder_.findings("classes.split = { test = 0.5, held_out = [\"mug.off\"] }"),
       "r.toml:4:42: classes.split.held_out must not be given together with classes.split.test");
   EXPECT_EQ(folder_.findings("classes.split.by = \"view\""),
-            "r.toml:4:20: classes.split.by has no effect without classes.split.test, "
-            "classes.split.held_out or classes.split.folds");
+            "r.toml:4:20: classes.split.by has no effect without test, val, held_out or folds of "
+            "classes.split");
   EXPECT_EQ(folder_.findings("classes.split.stratified = true"),
-            "r.toml:4:28: classes.split.stratified has no effect without classes.split.test or "
-            "classes.split.folds");
+            "r.toml:4:28: classes.split.stratified has no effect without test, val or folds of "
+            "classes.split");
   EXPECT_EQ(folder_.findings("classes.split = { test = 0.5, stratified = true }"),
             "r.toml:4:44: classes.split.stratified = true wants classes: classes.from names them");
   EXPECT_THAT(folder_.findings("classes.split = { by = \"view\", test = 0.5, stratified = true }"),
@@ -327,6 +504,38 @@ TEST_F(SplitKeysTest, ThatCannotBeMeantAreNamed) {
             "r.toml:4:23: classes.split.folds must be an integer in [2, 1000], got 1");
   EXPECT_EQ(folder_.findings("classes.split.held_out = []"),
             "r.toml:4:26: classes.split.held_out must name something, got an empty list");
+  EXPECT_EQ(folder_.findings("classes.split = { test = 0.6, val = 0.5 }"),
+            "r.toml:4:37: classes.split.val and classes.split.test must be 1 at most together, got "
+            "1.1");
+  EXPECT_EQ(folder_.findings("classes.split = { train = 0.7, val = 0.15, test = 0.15 }"), "");
+  EXPECT_EQ(folder_.findings("classes.split = { train = 0.8, val = 0.15, test = 0.15 }"),
+            "r.toml:4:27: classes.split.train must be what classes.split.test and val leave, 0.7, "
+            "got 0.8");
+  EXPECT_EQ(folder_.findings("classes.split.train = 0.8"),
+            "r.toml:4:23: classes.split.train has no effect without classes.split.test or "
+            "classes.split.val");
+  EXPECT_EQ(folder_.findings("classes.split = { by = \"class\", test = 0.5 }"),
+            "r.toml:4:24: classes.split.by = \"class\" wants classes: classes.from names them");
+  EXPECT_EQ(folder_.findings("classes.split = { by = \"environment\", held_out = [\"attic\"], "
+                             "held_out_val = [\"attic\"] }"),
+            "r.toml:4:76: classes.split.held_out_val must not name what held_out does, got "
+            "\"attic\"");
+  EXPECT_EQ(folder_.findings("classes.split = { test = 0.5, held_out_val = [\"mug.off\"] }"),
+            "r.toml:4:46: classes.split.held_out_val must not be given together with "
+            "classes.split.test");
+  folder_.add("n.csv", "name,class\ncar,a/b\nmug,a/c\ntree,d\n");
+  const std::string nested =
+      "classes.from = \"n.csv\"\nclasses.split = { by = \"class\", held_out = ";
+  for (const ImageSpec& image : expand(folder_.read(nested + "[\"a\"] }")))
+    EXPECT_EQ(*image.split, *image.class_path == "d" ? "train" : "test");
+  EXPECT_EQ(folder_.findings(nested + "[\"b\"] }"),
+            "r.toml:5:45: classes.split.held_out must name one of the recipe's classes, got \"b\"");
+  folder_.add("s.csv", "name,class,split\ncar,a,train\nmug,a,test\ntree,a,train\n");
+  const std::string told = "classes.from = \"s.csv\"\nclasses.split = { ";
+  EXPECT_EQ(folder_.findings(told + "val = 0.5 }"), "");
+  EXPECT_THAT(folder_.findings(told + "val = 0.5, by = \"view\" }"),
+              HasSubstr("classes.split.val wants classes.split.by = \"model\" where classes.from "
+                        "says what is train and test, got \"view\""));
   EXPECT_EQ(folder_.findings("check.mask_least = 0.1"),
             "r.toml:4:20: check.mask_least is no key of a recipe, did you mean check.masks_least?");
 }

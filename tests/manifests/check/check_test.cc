@@ -246,6 +246,35 @@ TEST(Checks, ModelsAreInBothSplitsWhereViewsAreSplit) {
             "24 of 24 models are in more than one split");
 }
 
+TEST(Checks, ClassesAreOfOneSplitWhereClassesAreSplit) {
+  CheckInput input = clean();
+  for (ImageRecord& image : input.images)
+    image.split = image.class_path == "car" ? "val" : image.class_path == "mug" ? "test" : "train";
+  EXPECT_THAT(found(input, "balance"),
+              ElementsAre(HasSubstr("classes have images in one split only")));
+  input.dataset.recipe_text = "classes.split.by = \"class\"\n";
+  EXPECT_THAT(found(input, "balance"), IsEmpty());
+  // Whole models are split: one mesh in two splits is as bad as ever.
+  for (const char* view : {"0", "1"})
+    image_of(input, std::string("car1.ply/") + view).parts[0] = hash_text("mug0.ply");
+  EXPECT_THAT(found(input, "leaks"),
+              ElementsAre("error: 1/23 models are the same mesh in two splits: mug0.ply (test), "
+                          "car1.ply (val)"));
+}
+
+TEST(Checks, ModelsThatAreSkippedAreANote) {
+  CheckInput input = clean();
+  input.dataset.concerns = {{"models_unlisted", 5, 29, {"a.off", "b.off", "c.off"}}};
+  EXPECT_TRUE(run_checks(input, {"unused"}).empty()) << "built without a class";
+  input.dataset.recipe_text = "classes.unlisted = \"skip\"\n";
+  const std::vector<CheckFinding> findings = run_checks(input, {"unused"});
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].level, CheckLevel::note);
+  EXPECT_EQ(findings[0].what,
+            "5 of 29 model files stand in no class file and are left out (classes.unlisted = "
+            "\"skip\"): a.off, b.off, c.off and 2 more");
+}
+
 TEST(Checks, CopiesOfOneShapeInTwoSplits) {
   CheckInput input = clean();
   const std::string shape = std::string(72, '1');

@@ -100,7 +100,7 @@ TEST(Copies, InTwoFolds) {
   plant_copy(input, "mug-0.ply", "mug-1.ply");
   EXPECT_THAT(told(input, "leaks"),
               ElementsAre("error: 1/7 models are the same mesh in two folds: mug-0.ply (fold 0), "
-                          "mug-1.ply (fold 1)"));
+                          "mug-1.ply (fold 1): the same or mirrored"));
   fold(input, "mug-1.ply", 0);
   EXPECT_THAT(told(input, "leaks"), IsEmpty()) << "in one fold it is no leak";
   input = folded();
@@ -123,9 +123,9 @@ TEST(Copies, InFoldsBesideATest) {
   plant_copy(input, "cup-0.ply", "cup-3.ply");
   EXPECT_THAT(told(input, "leaks"),
               ElementsAre("error: 1/6 models are the same mesh in two splits: cup-3.ply (test), "
-                          "cup-0.ply (train)",
+                          "cup-0.ply (train): the same or mirrored",
                           "error: 1/5 models are the same mesh in two folds: mug-0.ply (fold 0), "
-                          "mug-1.ply (fold 1)"));
+                          "mug-1.ply (fold 1): the same or mirrored"));
 }
 
 TEST(Copies, DistractorsPicturesAndClassesOfFolds) {
@@ -165,12 +165,12 @@ TEST(Copies, OfVariedModelsAreErrors) {
   plant_copy(input, "mug-0.ply", "cup-2.ply");
   EXPECT_THAT(told(input, "labels"),
               ElementsAre("error: 1/7 models are the same mesh in two classes: cup-2.ply (cup), "
-                          "mug-0.ply (mug)"));
+                          "mug-0.ply (mug): the same or mirrored"));
   for (ImageRecord& image : input.images)
     image.split = image.class_path == "mug" ? "train" : "test";
   EXPECT_THAT(told(input, "leaks"),
               ElementsAre("error: 1/7 models are the same mesh in two splits: cup-2.ply (test), "
-                          "mug-0.ply (train)"));
+                          "mug-0.ply (train): the same or mirrored"));
 }
 
 TEST(Copies, AModelThatIsTurnedInEachImageIsOne) {
