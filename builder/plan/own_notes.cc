@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
 
 namespace ds {
 
@@ -15,15 +16,21 @@ Concern find_own_notes(const std::vector<PlannedImage>& images, Inputs& inputs,
                        std::vector<std::string>& lines) {
   Concern all{"own_materials_partial", 0, 0, {}};
   std::map<std::string, Concern> found;
-  Shared<std::filesystem::path> model;  // of the image before: a model's images follow each other
-  for (const PlannedImage& image : images) {
-    if (image.error || !shows_own(image.spec) || model.is_same(image.spec.model_file)) continue;
-    model = image.spec.model_file;
+  std::set<const void*> seen;  // files' paths are long, and images many
+  std::set<std::string> files;
+  const auto look = [&](const Shared<std::filesystem::path>& file, const std::string& model) {
+    if (!seen.insert(file.identity()).second || !files.insert(file->native()).second) return;
     ++all.of;
-    const OwnMaterials& own = inputs.own_materials(model);
+    const OwnMaterials& own = inputs.own_materials(file);
     for (const auto& [name, count] : own.notes)
-      add_example(found[name], image.spec.model_name);
-    if (!own.notes.empty()) add_example(all, image.spec.model_name);
+      add_example(found[name], model);
+    if (!own.notes.empty()) add_example(all, model);
+  };
+  for (const PlannedImage& image : images) {
+    if (image.error || !shows_own(image.spec)) continue;
+    look(image.spec.model_file, image.spec.model_name);
+    for (const Distractor& one : *image.spec.distractors)
+      look(one.model.file, one.model.name);
   }
   for (const OwnNote& note : k_own_notes) {
     const auto at = found.find(note.name);

@@ -246,7 +246,7 @@ class ImportTest(TinyCase):
         (self.to / "classes.csv").write_text("na")
         self.take_in(self.models)
         self.assertEqual(sorted(path.name for path in self.to.iterdir()),
-                         ["classes.csv", "environments", "ids.txt", "materials", "recipe.toml"])
+                         [".dsbuild-imported", "classes.csv", "environments", "ids.txt", "materials", "recipe.toml"])
 
     def test_nothing_to_import(self):
         self.models.mkdir()

@@ -332,6 +332,25 @@ class OwnMaterialsTest(TinyCase):
         grey = [pixel for row in self.albedo("a.obj") for pixel in row]
         self.assertEqual(len(set(grey)), 1)  # both faces show light grey
 
+    def test_files_without_any_are_said_and_counted(self):
+        """STL knows no materials: such models are light grey, and so are distractors from another folder."""
+        def stl(height):
+            corners = ["0 0 0", "1 0 0", "0 1 0", f"0 0 {height}"]
+            facets = "".join("facet normal 0 0 0\nouter loop\n" + "".join(f"vertex {corners[i]}\n" for i in face) +
+                             "endloop\nendfacet\n" for face in ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)))
+            return f"solid x\n{facets}endsolid x\n"
+
+        self.put("a.stl", stl(1))
+        self.put("d.gltf", gltf([{"pbrMetallicRoughness": {}}]))
+        (self.folder / "others").mkdir()
+        (self.folder / "others/b.stl").write_text(stl(2))
+        more = [f'distractors.dir="{self.folder / "others"}"', "distractors.count=1", "distractors.place_m={disc=[0.3,0.5]}"]
+        for verb in ("plan", "build"):
+            run = self.run_it(verb, self.recipe, "-o", self.out, "--json", *(word for one in more for word in ("--set", one)))
+            self.assertEqual((run.code, run.json["concerns"]["own_materials_partial"]), (0, 2), run)
+            self.assertEqual(run.err.count("2 of 3 models (a.stl, b.stl): some of their own materials are none: these faces show light grey"),
+                             1, run)
+
     def test_the_recipe_gives_no_other_materials_beside_them(self):
         self.put("a.obj", obj(["f 1 2 3 4"], uvs=False))
         for line in ('dir = "materials"', 'files = ["materials/red.mat"]', 'vary = { "*.kd" = 0.5 }', 'per = "view"'):
