@@ -87,7 +87,7 @@ Concern count_unlikely_assets(const Recipe& recipe, const std::vector<PlannedIma
       "assets_unlikely", images, inputs, [](const Scene& material) { return material.unlikely; },
       [&](const fs::path& folder) {
         const EnvironmentFacts& facts = inputs.environment_facts(folder);
-        const bool dark = facts.dark && recipe.lights.empty();
+        const bool dark = facts.dark && recipe.lights.empty() && recipe.environment_vary.empty();
         if (dark) warn(fmt::format("{}: nothing in it gives light", folder.string()));
         return facts.unlikely || dark;
       });

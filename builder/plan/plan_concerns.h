@@ -13,7 +13,7 @@ namespace ds {
 Concern count_damaged(const std::vector<PlannedImage>& images, Inputs& inputs);
 /// Counts the files, whose findings were said when they were read.
 Concern count_unphysical(const std::vector<PlannedImage>& images, Inputs& inputs);
-/// Likewise, of what is hardly meant; warns of environments without any light, where the recipe has none either.
+/// Likewise, of what is hardly meant; warns of environments without any light, where the recipe gives them none either.
 Concern count_unlikely_assets(const Recipe& recipe, const std::vector<PlannedImage>& images,
                               Inputs& inputs);
 /// Counts the images whose files another's would replace where case does not count.
