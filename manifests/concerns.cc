@@ -9,11 +9,12 @@ namespace ds {
 
 std::vector<Concern> no_concerns() {
   std::vector<Concern> concerns;
-  for (const char* name : {"mask_empty", "mask_at_frame", "mask_small", "picture_black",
-                           "picture_white", "models_absent", "models_unlisted", "entries_ambiguous",
-                           "classes_unshared", "classes_empty", "splits_empty", "assets_unphysical",
-                           "assets_unlikely", "sizes_unlikely", "names_by_case", "meshes_damaged",
-                           "models_unlikely", "own_materials_partial", "distractors_unplaced"})
+  for (const char* name :
+       {"mask_empty",       "mask_at_frame",         "mask_small",           "picture_black",
+        "picture_white",    "models_absent",         "models_unlisted",      "entries_ambiguous",
+        "classes_unshared", "classes_empty",         "splits_empty",         "assets_unphysical",
+        "assets_unlikely",  "sizes_unlikely",        "names_by_case",        "meshes_damaged",
+        "models_unlikely",  "own_materials_partial", "distractors_unplaced", "draws_idle"})
     concerns.push_back({name, 0, 0, {}});
   return concerns;
 }

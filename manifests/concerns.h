@@ -35,6 +35,7 @@ namespace ds {
 ///                    have faces without one, or what of it is not shown
 ///   distractors_unplaced  images that show fewer distractors than were drawn: no more found a place, or there
 ///                    was no other model
+///   draws_idle       keys whose distributions change nothing of any image
 struct Concern {
   std::string name;
   std::uint64_t count = 0;            ///< 0: none

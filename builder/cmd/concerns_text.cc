@@ -53,6 +53,7 @@ constexpr ConcernText k_texts[] = {
      true},
     {"distractors_unplaced",
      "images show fewer distractors than were drawn, for want of places or of other models"},
+    {"draws_idle", "keys that are drawn change nothing of any image"},
 };
 
 const ConcernText& text_of(const Concern& concern) {

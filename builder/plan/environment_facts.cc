@@ -7,6 +7,7 @@
 #include "tracer/scene/scene_reads.h"
 #include "tracer/scene/sdl.h"
 #include "tracer/scene/sdl_warn.h"
+#include "tracer/scene/type_tables.h"
 #include "tracer/scene/vary.h"
 
 #include <fmt/format.h>
@@ -61,6 +62,20 @@ double longest_side(const Scene& environment) {
   }
   const Vec3d side = all.most - all.least;
   return std::max({side.x, side.y, side.z});
+}
+
+/// Lights that are alike from everywhere alone have none.
+bool has_sides(const Scene& environment) {
+  return !environment.objects.empty() ||
+         std::any_of(environment.lights.begin(), environment.lights.end(), [](const Light& light) {
+           const LightType& type = type_of(light);
+           return (type.host.made_by & kernels::k_host_panorama) != 0 ||
+                  std::any_of(type.host.inputs.begin(), type.host.inputs.end(),
+                              [](const LightInput& input) {
+                                return input.value == LightValue::point ||
+                                       input.value == LightValue::direction;
+                              });
+         });
 }
 
 json to_json(const std::optional<FileStamp>& stamp) {
@@ -131,7 +146,8 @@ EnvironmentFacts facts_of(const Scene& environment, const std::string& nodes) {
           largest_material_id(environment),
           gain_changes_program(environment),
           nodes,
-          !gives_light(environment)};
+          !gives_light(environment),
+          has_sides(environment)};
 }
 
 std::string to_text(const EnvironmentFacts& facts, const std::vector<SourceFile>& files) {
@@ -151,7 +167,8 @@ std::string to_text(const EnvironmentFacts& facts, const std::vector<SourceFile>
                 {"largest_material_id", facts.largest_material_id},
                 {"gain_changes_program", facts.gain_changes_program},
                 {"nodes", facts.nodes},
-                {"dark", facts.dark}}
+                {"dark", facts.dark},
+                {"turns", facts.turns}}
         .dump();
   } catch (const json::exception&) {  // a name that is no UTF-8
     return "";
@@ -174,7 +191,8 @@ std::optional<EnvironmentFacts> facts_from_text(const std::string& text) {
                             object.at("largest_material_id").get<std::uint32_t>(),
                             object.at("gain_changes_program").get<bool>(),
                             object.at("nodes").get<std::string>(),
-                            object.at("dark").get<bool>()};
+                            object.at("dark").get<bool>(),
+                            object.at("turns").get<bool>()};
   } catch (const json::exception&) {
     return std::nullopt;
   } catch (const Error&) {  // a file that cannot be looked at: reading it says why

@@ -28,6 +28,7 @@ struct EnvironmentFacts {
   bool gain_changes_program = false;  ///< see vary.h
   std::string nodes;                  ///< EnvironmentSource::nodes
   bool dark = false;                  ///< nothing in it gives light
+  bool turns = false;                 ///< turned, it is another one, but for what is round
 };
 
 /// What of an object a plane reads beside its places: its traits of kernels/plane_traits.h that say

@@ -4,6 +4,7 @@
 #include "builder/plan/distractors.h"
 #include "builder/plan/environment_vary.h"
 #include "builder/plan/hash_index.h"
+#include "builder/plan/idle_draws.h"
 #include "builder/plan/image_material.h"
 #include "builder/plan/image_scene.h"
 #include "builder/plan/licence_files.h"
@@ -399,7 +400,8 @@ Plan make_plan(Dataset& dataset, Inputs& inputs, bool force, Shard shard, Wanted
                    count_damaged(plan.images, inputs),
                    find_unlikely_properties(dataset.recipe, plan.images, inputs, unlikely),
                    find_own_notes(plan.images, inputs, unlikely),
-                   count_unplaced(dataset.recipe, plan.images)};
+                   count_unplaced(dataset.recipe, plan.images),
+                   find_idle_draws(dataset.recipe, plan.images, inputs)};
   for (const std::string& line : unlikely)
     warn(line);
   snapshot.reset();

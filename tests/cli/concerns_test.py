@@ -12,7 +12,7 @@ NONE = {name: 0 for name in ("mask_empty", "mask_at_frame", "mask_small", "pictu
                              "models_absent", "models_unlisted", "entries_ambiguous", "classes_unshared",
                              "classes_empty", "splits_empty", "assets_unphysical", "assets_unlikely", "sizes_unlikely",
                              "names_by_case", "meshes_damaged", "models_unlikely", "own_materials_partial",
-                             "distractors_unplaced")}
+                             "distractors_unplaced", "draws_idle")}
 
 
 def grey_png(path):
