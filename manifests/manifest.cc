@@ -79,6 +79,7 @@ json to_json_value(const ObjectRecord& object, const ImageRecord& image) {
              {"class_id", object.class_id ? json(*object.class_id) : json()},
              {"material", object.material}};
   add_pose(value, object.pose, image);
+  value["truncation"] = object.truncation ? json(*object.truncation) : json();
   if (!object.pixels) return value;
   const ObjectCounts& counts = *object.pixels;
   value["pixels"] = to_json_value(counts);
@@ -189,7 +190,7 @@ json to_json_value(const DatasetRecord& dataset) {
         {"box", "[x, y, width, height] in whole pixels around the model in the mask"},
         {"objects",
          "things beside the model, which the plane object_id has as their id; box, "
-         "visible_fraction and poses of each as those of the model, which is 1"},
+         "visible_fraction, truncation and poses of each as those of the model, which is 1"},
         {"model_box",
          "[least, most] of the model file's coordinates; box_m around its eight corners in the "
          "world"}}}};

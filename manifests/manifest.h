@@ -66,6 +66,8 @@ struct ObjectRecord {
   /// "pixels", and what follows from them as from the model's: "box", "visible_fraction", "occlusion". Not
   /// there where the image has no plane.
   std::optional<ObjectCounts> pixels{};
+  /// As the model's; null where the model's would be, and where the file of this one can no longer be read.
+  std::optional<double> truncation{};
 };
 
 /// One image of a dataset: a line of manifest/images.jsonl.

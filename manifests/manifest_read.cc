@@ -209,6 +209,7 @@ void read_objects(const json& owner, const SourcePlace& place, Diagnostics& diag
     std::optional<ModelPose> pose;
     if (members.find("model_to_world") != nullptr) read_pose(members, value, pose);
     object.pose = pose.value_or(ModelPose{});
+    if (value.contains("truncation")) members.optional_number("truncation", object.truncation);
     const auto pixels = value.find("pixels");
     if (pixels == value.end()) continue;
     try {

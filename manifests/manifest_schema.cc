@@ -106,7 +106,8 @@ json object_schema() {
               {"pixels", object_of(std::move(pixels), std::move(names))},
               {"box", said(or_null(list_of(k_count, 4)), "x, y, width, height, pixels")},
               {"visible_fraction", or_null(k_number)},
-              {"occlusion", or_null(k_number)}};
+              {"occlusion", or_null(k_number)},
+              {"truncation", or_null(k_number)}};
   json required = json::array({"id", "model", "class_path", "class_id", "material"});
   const json pose = pose_schema();
   for (const auto& [name, field] : pose.items()) {

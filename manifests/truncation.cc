@@ -20,8 +20,8 @@ constexpr double k_most_pixels = 1e7;
 /// The model's coordinates to pixels of the picture, whose centres are at .5.
 class ToPicture {
  public:
-  explicit ToPicture(const ImageRecord& image)
-      : image_(image), m_(model_to_camera(*image.pose, image.camera_to_world)) {}
+  ToPicture(const ImageRecord& image, const ModelPose& pose)
+      : image_(image), m_(model_to_camera(pose, image.camera_to_world)) {}
 
   /// Nothing for what is not before the camera, or far beyond the picture.
   std::optional<Place> operator()(Vec3d p) const {
@@ -47,8 +47,7 @@ class ToPicture {
   std::array<double, 16> m_;
 };
 
-bool box_is_inside(const ImageRecord& image, const ToPicture& to_picture) {
-  const Box& box = image.pose->model_box;
+bool box_is_inside(const ImageRecord& image, const Box& box, const ToPicture& to_picture) {
   for (unsigned corner = 0; corner < 8; ++corner) {
     const auto place = to_picture({(corner & 1U) != 0 ? box.most.x : box.least.x,
                                    (corner & 2U) != 0 ? box.most.y : box.least.y,
@@ -72,8 +71,13 @@ PixelCounts counted(std::uint64_t beyond, std::optional<std::uint64_t> whole) {
 std::optional<PixelCounts> count_beyond(const ImageRecord& image,
                                         const std::function<const FileMesh&()>& mesh) {
   if (!image.pose) return std::nullopt;
-  const ToPicture to_picture(image);
-  if (box_is_inside(image, to_picture)) return counted(0, std::nullopt);
+  return count_beyond(image, *image.pose, mesh);
+}
+
+PixelCounts count_beyond(const ImageRecord& image, const ModelPose& pose,
+                         const std::function<const FileMesh&()>& mesh) {
+  const ToPicture to_picture(image, pose);
+  if (box_is_inside(image, pose.model_box, to_picture)) return counted(0, std::nullopt);
   const FileMesh& model = mesh();
   std::vector<Place> places;
   places.reserve(model.positions.size());

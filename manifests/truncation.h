@@ -19,5 +19,8 @@ namespace ds {
 /// + - * / only: the same everywhere.
 std::optional<PixelCounts> count_beyond(const ImageRecord& image,
                                         const std::function<const FileMesh&()>& mesh);
+/// The same of another thing that the image shows, by its pose.
+PixelCounts count_beyond(const ImageRecord& image, const ModelPose& pose,
+                         const std::function<const FileMesh&()>& mesh);
 
 }  // namespace ds

@@ -84,9 +84,9 @@ class TracerRenderer : public Renderer {
   std::string name_of_distractors(const ImageSpec& image) const {
     std::string text;
     for (const Distractor& one : *image.distractors)
-      text += fmt::format("{}\n{}\n{}\n{}", one.number, one.model.file->native(),
-                          one.material_file->native(),
-                          canonical_model({}, {}, normalise_of(one, recipe_)));
+      text += fmt::format(
+          "{}\n{}\n{}\n{}{}", one.number, one.model.file->native(), one.material_file->native(),
+          canonical_model({}, {}, normalise_of(one, recipe_)), canonical_vary(one, recipe_));
     return text;
   }
 

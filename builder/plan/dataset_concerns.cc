@@ -140,25 +140,40 @@ void count_older_pixels(ImageRecord& record, const PlannedImage& image,
   }
 }
 
-const FileMesh& BeyondCounter::mesh_of(const ImageRecord& record,
-                                       const std::filesystem::path& file) {
-  if (file_ != file) {
-    file_.clear();
-    mesh_ = read_model(file).mesh;
-    file_ = file;
-  }
-  if (bounds_of(mesh_) != record.pose->model_box)
+const FileMesh& BeyondCounter::mesh_of(const ModelPose& pose, const std::filesystem::path& file) {
+  last_ = meshes_.get(hash_text(file.native()), [&] { return ReadMesh{read_model(file).mesh}; });
+  if (bounds_of(last_->mesh) != pose.model_box)
     fail(ErrorKind::asset, "{}: is no longer the model of the pictures", file.string());
-  return mesh_;
+  return last_->mesh;
+}
+
+void BeyondCounter::tell_objects(ImageRecord& record, const ImageSpec& image) {
+  for (const Distractor& one : *image.distractors)
+    for (ObjectRecord& object : record.objects) {
+      if (object.id != one.id()) continue;
+      try {
+        const PixelCounts counts = count_beyond(record, object.pose, [&]() -> const FileMesh& {
+          return mesh_of(object.pose, one.model.file);
+        });
+        if (counts.beyond == 0U && !counts.whole)
+          object.truncation = 0;
+        else if (*counts.whole != 0)
+          object.truncation =
+              static_cast<double>(*counts.beyond) / static_cast<double>(*counts.whole);
+      } catch (const Error& error) {
+        warn(fmt::format("{}; the manifest does not say what of it is cut off", error.what()));
+      }
+    }
 }
 
 void BeyondCounter::count(ImageRecord& record, const PlannedImage& image) {
+  tell_objects(record, image.spec);
   if (record.pixel_counts.beyond) return;
   bool read = false;
   try {
     const auto counts = count_beyond(record, [&]() -> const FileMesh& {
       read = true;
-      return mesh_of(record, image.spec.model_file);
+      return mesh_of(*record.pose, image.spec.model_file);
     });
     if (!counts) return;
     add_counts(record.pixel_counts, *counts);

@@ -4,9 +4,11 @@
 #include "builder/plan/plan.h"
 #include "manifests/concerns.h"
 #include "manifests/manifest.h"
+#include "tracer/base/kept.h"
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -34,8 +36,8 @@ std::vector<Concern> dataset_concerns(const Recipe& recipe, const std::vector<Co
 void count_older_pixels(ImageRecord& record, const PlannedImage& image,
                         const std::filesystem::path& folder, Database& database);
 
-/// Counts what of its model an image cuts off (count_beyond), where that is not known yet. Keeps the model
-/// that was read last: images of one model follow each other.
+/// Counts what of its model an image cuts off (count_beyond), where that is not known yet, and tells it of each
+/// distractor. Keeps the models that were read last.
 class BeyondCounter {
  public:
   /// Writes what reading models told into the database, so that it need not be read again.
@@ -44,10 +46,18 @@ class BeyondCounter {
   void count(ImageRecord& record, const PlannedImage& image);
 
  private:
-  const FileMesh& mesh_of(const ImageRecord& record, const std::filesystem::path& file);
+  struct ReadMesh {
+    FileMesh mesh;
+    friend std::size_t bytes_held(const ReadMesh& read) {
+      return read.mesh.positions.size() * sizeof(Vec3d) +
+             read.mesh.triangles.size() * sizeof(read.mesh.triangles[0]) + sizeof read;
+    }
+  };
+  const FileMesh& mesh_of(const ModelPose& pose, const std::filesystem::path& file);
+  void tell_objects(ImageRecord& record, const ImageSpec& image);
 
-  std::filesystem::path file_;
-  FileMesh mesh_;
+  Kept<ReadMesh> meshes_{std::size_t{128} << 20U};
+  std::shared_ptr<const ReadMesh> last_;
   std::vector<std::pair<Hash128, PixelCounts>> found_;  ///< by product
 };
 

@@ -69,7 +69,7 @@ std::string distractor_name(const Distractor& distractor) {
   return fmt::format("distractors[{}]", distractor.number);
 }
 
-const Scene& material_of(const Distractor& distractor, Inputs& inputs) {
+const Scene& material_file_of(const Distractor& distractor, Inputs& inputs) {
   return distractor.material_file.is_same(distractor.model.file)
              ? inputs.own_material(distractor.model.file)
              : inputs.material(*distractor.material_file);
@@ -111,7 +111,8 @@ const DistractorTexts::Facts& DistractorTexts::facts_of(const Distractor& distra
   Facts& facts = at->second;
   if (!is_new) return facts;
   try {
-    const Scene& material = material_of(distractor, inputs_);
+    // What constants stand in place of others is no matter for all but the first two.
+    const Scene material = material_of(distractor, recipe_, inputs_);
     facts.material = hash_text(canonical_material(material)).hex();
     facts.colours = hash_text(canonical_colours(material)).hex();
     facts.ids = ids_of_model(material);
@@ -125,6 +126,16 @@ const DistractorTexts::Facts& DistractorTexts::facts_of(const Distractor& distra
   return facts;
 }
 
+std::string DistractorTexts::material_of_own(const Distractor& distractor) {
+  if (recipe_.distractors.vary.empty()) return facts_of(distractor).material;
+  return hash_text(canonical_material(material_of(distractor, recipe_, inputs_))).hex();
+}
+
+std::string DistractorTexts::colours_of_own(const Distractor& distractor) {
+  if (recipe_.distractors.vary.empty()) return facts_of(distractor).colours;
+  return hash_text(canonical_colours(material_of(distractor, recipe_, inputs_))).hex();
+}
+
 std::string DistractorTexts::of_picture(const ImageSpec& image) {
   CanonicalText text;
   for (const Distractor& one : *image.distractors) {
@@ -132,7 +143,7 @@ std::string DistractorTexts::of_picture(const ImageSpec& image) {
     add_prefixed(text, one.number,
                  canonical_model(inputs_.model_hashes(one.model.file), facts.reads,
                                  normalise_of(one, recipe_)));
-    text.add(distractor_key(one.number, "material"), facts.material);
+    text.add(distractor_key(one.number, "material"), material_of_own(one));
   }
   return text.text();
 }
@@ -153,7 +164,7 @@ std::string DistractorTexts::of_plane(const ImageSpec& image, const PlaneType& p
     text.add(distractor_key(one.number, "id"), one.id());
     if ((plane.traits & kernels::k_plane_material_ids) != 0)
       text.add(distractor_key(one.number, "material_id"), facts_of(one).ids);
-    if (colours) text.add(distractor_key(one.number, "material"), facts_of(one).colours);
+    if (colours) text.add(distractor_key(one.number, "material"), colours_of_own(one));
   }
   return text.text();
 }

@@ -24,8 +24,8 @@ bool touch(const Cylinder& a, const Cylinder& b, double gap);
 /// give none is left out and counted in ImageSpec::unplaced. Throws what reading a model throws.
 void place_distractors(ImageSpec& image, const Recipe& recipe, Inputs& inputs);
 
-/// That of a distractor: the recipe's, or its model's own.
-const Scene& material_of(const Distractor& distractor, Inputs& inputs);
+/// That of a distractor as its file has it: the recipe's, or its model's own.
+const Scene& material_file_of(const Distractor& distractor, Inputs& inputs);
 
 /// "distractors[2]".
 std::string distractor_name(const Distractor& distractor);
@@ -48,6 +48,9 @@ class DistractorTexts {
     MeshExtras reads;
   };
   const Facts& facts_of(const Distractor& distractor);
+  /// Hashes of its material as it is drawn.
+  std::string material_of_own(const Distractor& distractor);
+  std::string colours_of_own(const Distractor& distractor);
 
   const Recipe& recipe_;
   Inputs& inputs_;

@@ -21,11 +21,6 @@ bool is_of(const VaryPattern& vary, const std::string& environment) {
   return fits_pattern(environment, vary.environment);
 }
 
-Vec3d value_of(const DrawnValue& drawn, DrawnKind kind) {
-  return kind == DrawnKind::number ? Vec3d{drawn[0], drawn[0], drawn[0]}
-                                   : Vec3d{drawn[0], drawn[1], drawn[2]};
-}
-
 /// Whether it is of what shines: a light or a material's emission.
 bool is_of_light(const NodeValue& value) {
   return value.property.starts_with("lights.") ||
@@ -146,8 +141,7 @@ std::vector<NodeValue> environment_values(const ImageSpec& image, const Recipe& 
   std::vector<DrawnProperty> drawn;
   for (const VaryPattern& vary : recipe.environment_vary) {
     if (!is_of(vary, *image.environment_name)) continue;
-    const Vec3d value =
-        value_of(image.variables->draws[vary.drawn], recipe.drawn[vary.drawn].distribution.kind);
+    const Vec3d value = vary_value(vary, recipe.drawn, image.variables->draws);
     for (const NodeProperty* property :
          inputs.environment_fits(image.environment_folder, vary.node, vary.property))
       put(drawn, {property, value});

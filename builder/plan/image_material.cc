@@ -3,6 +3,7 @@
 
 #include "builder/plan/distractors.h"
 #include "builder/plan/image_scene.h"
+#include "builder/recipe/vary_patterns.h"
 #include "tracer/base/canonical.h"
 #include "tracer/base/error.h"
 #include "tracer/device/scene_effects.h"
@@ -19,57 +20,84 @@
 namespace ds {
 namespace {
 
-Vec3d value_of(const ImageSpec& image, const Recipe& recipe, const VaryPattern& vary) {
-  const DrawnValue& value = image.variables->draws[vary.drawn];
-  const bool colour = recipe.drawn[vary.drawn].distribution.kind == DrawnKind::colour;
-  return colour ? Vec3d{value[0], value[1], value[2]} : Vec3d{value[0], value[0], value[0]};
+Scene varied(const Scene& material, const std::vector<VaryPattern>& patterns,
+             const std::vector<Drawn>& drawn, const DrawnValues& draws) {
+  std::vector<PropertyValue> values;
+  for (const VaryPattern& vary : patterns)
+    values.push_back({vary.pattern, vary_value(vary, drawn, draws)});
+  return with_values(material, values);
+}
+
+void add_values(CanonicalText& text, const std::vector<VaryPattern>& patterns,
+                const std::vector<Drawn>& drawn, const DrawnValues& draws) {
+  for (const VaryPattern& vary : patterns) {
+    const Vec3d value = vary_value(vary, drawn, draws);
+    const double numbers[] = {value.x, value.y, value.z};
+    text.add(vary.pattern, std::span<const double>(numbers));
+  }
 }
 
 }  // namespace
 
 Scene material_of(const ImageSpec& image, const Recipe& recipe, Inputs& inputs) {
-  std::vector<PropertyValue> values;
-  for (const VaryPattern& vary : recipe.vary)
-    values.push_back({vary.pattern, value_of(image, recipe, vary)});
-  return with_values(inputs.material(image), values);
+  return varied(inputs.material(image), recipe.vary, recipe.drawn, image.variables->draws);
+}
+
+Scene material_of(const Distractor& distractor, const Recipe& recipe, Inputs& inputs) {
+  const DistractorSettings& settings = recipe.distractors;
+  return varied(material_file_of(distractor, inputs), settings.vary, settings.drawn,
+                distractor.draws);
 }
 
 std::string canonical_vary(const ImageSpec& image, const Recipe& recipe) {
   CanonicalText text;
-  for (const VaryPattern& vary : recipe.vary) {
-    const Vec3d value = value_of(image, recipe, vary);
-    const double numbers[] = {value.x, value.y, value.z};
-    text.add(vary.pattern, std::span<const double>(numbers));
-  }
+  add_values(text, recipe.vary, recipe.drawn, image.variables->draws);
   return text.text();
 }
 
-void check_vary(const Recipe& recipe, Inputs& inputs) {
-  Diagnostics diagnostics(ErrorKind::recipe);
-  for (const VaryPattern& vary : recipe.vary) {
+std::string canonical_vary(const Distractor& distractor, const Recipe& recipe) {
+  CanonicalText text;
+  add_values(text, recipe.distractors.vary, recipe.distractors.drawn, distractor.draws);
+  return text.text();
+}
+
+namespace {
+
+void check_patterns(std::string_view key, const std::vector<VaryPattern>& patterns,
+                    const std::vector<Drawn>& drawn, const Recipe& recipe, Inputs& inputs,
+                    Diagnostics& diagnostics) {
+  for (const VaryPattern& vary : patterns) {
     bool any = false;
     for (const std::filesystem::path& file : recipe.materials) {
       const PropertyFit fit = fit_of(inputs.material(file), vary.pattern);
       any = any || fit.count > 0;
       if (fit.flag)
-        diagnostics.add(vary.value.place,
-                        "materials.vary {:?} names a switch of {}, which is not drawn",
+        diagnostics.add(vary.value.place, "{} {:?} names a switch of {}, which is not drawn", key,
                         vary.pattern, file.filename().string());
-      if (fit.count > 0 && !fit.colour &&
-          recipe.drawn[vary.drawn].distribution.kind == DrawnKind::colour)
+      if (fit.count > 0 && !fit.colour && drawn[vary.drawn].distribution.kind == DrawnKind::colour)
         diagnostics.add(vary.value.place,
-                        "materials.vary {:?} is one number in {}, and a colour is drawn for it",
+                        "{} {:?} is one number in {}, and a colour is drawn for it", key,
                         vary.pattern, file.filename().string());
       if (fit.count == 0 && !vary.optional)
         diagnostics.add(vary.value.place,
-                        "materials.vary {:?} must name a property of each material, found none in "
-                        "{}; with a ? behind it such a material is left as it is",
-                        vary.pattern, file.filename().string());
+                        "{} {:?} must name a property of each material, found none in {}; with a ? "
+                        "behind it such a material is left as it is",
+                        key, vary.pattern, file.filename().string());
     }
     if (!any && vary.optional)
-      diagnostics.add(vary.value.place, "materials.vary {:?} names no property of any material",
+      diagnostics.add(vary.value.place, "{} {:?} names no property of any material", key,
                       vary.pattern + "?");
   }
+}
+
+}  // namespace
+
+void check_vary(const Recipe& recipe, Inputs& inputs) {
+  Diagnostics diagnostics(ErrorKind::recipe);
+  check_patterns("materials.vary", recipe.vary, recipe.drawn, recipe, inputs, diagnostics);
+  const DistractorSettings& distractors = recipe.distractors;
+  check_patterns("distractors.vary", distractors.vary, distractors.drawn, recipe, inputs,
+                 diagnostics);
   diagnostics.throw_if_any();
 }
 
@@ -153,7 +181,7 @@ Scene scene_without_model(const Recipe& recipe, Inputs& inputs, const ImageSpec&
   scene = changed(std::move(scene), change);
   scene.lights.insert(scene.lights.end(), image.lights->begin(), image.lights->end());
   for (const Distractor& one : *image.distractors) {
-    Scene material = material_of(one, inputs);
+    Scene material = material_of(one, recipe, inputs);
     Mesh mesh = stand_in(material);
     add_object(scene, material, std::move(mesh), {one.id(), distractor_name(one)});
   }

@@ -11,6 +11,8 @@ namespace ds {
 
 /// The image's material with what materials.vary drew for it.
 Scene material_of(const ImageSpec& image, const Recipe& recipe, Inputs& inputs);
+/// A distractor's with what distractors.vary drew for it.
+Scene material_of(const Distractor& distractor, const Recipe& recipe, Inputs& inputs);
 /// What tells of the ids in the plane material_id where a model shows it: its own materials' are their numbers.
 std::string ids_of_model(const Scene& material);
 /// Names what a program depends on of a model's own materials, which thousands of models have in common.
@@ -19,7 +21,8 @@ Hash128 program_name_of(const Scene& material);
 Hash128 program_share_of(const Scene& material);
 /// Canonical text of what was drawn for it; "" where nothing is.
 std::string canonical_vary(const ImageSpec& image, const Recipe& recipe);
-/// Throws Error(recipe), all findings, where a pattern of materials.vary names no property of any material, or
+std::string canonical_vary(const Distractor& distractor, const Recipe& recipe);
+/// Throws Error(recipe), all findings, where a pattern of materials.vary or distractors.vary names no property of any material, or
 /// without a "?" of one, or gives a colour to a property of one number.
 void check_vary(const Recipe& recipe, Inputs& inputs);
 

@@ -20,7 +20,7 @@ ImageParts parts_of(const ImageSpec& image, const Recipe& recipe, Inputs& inputs
     parts.nodes = inputs.environment_facts(image.environment_folder).nodes;
   for (const Distractor& one : *image.distractors) {
     parts.objects.push_back({{one.id(), distractor_name(one)},
-                             material_of(one, inputs),
+                             material_of(one, recipe, inputs),
                              inputs.model_source(one.model.file, normalise_of(one, recipe))});
     parts.objects.back().source.shared = true;
   }

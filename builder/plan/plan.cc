@@ -265,7 +265,7 @@ void check_distractors(const Recipe& recipe, Inputs& inputs, const ImageSpec& sp
     for (const PlaneOutput& plane : recipe.outputs.planes) {
       if ((plane.type->traits & kernels::k_plane_material_ids) == 0) continue;
       const std::uint32_t most = largest_id(plane.encoding),
-                          id = largest_material_id(material_of(one, inputs));
+                          id = largest_material_id(material_file_of(one, inputs));
       if (id > most)
         fail(ErrorKind::asset, "{}: its materials' ids must be at most {} for the plane {}, got {}",
              one.material_file->string(), most, plane.type->name, id);

@@ -80,7 +80,8 @@ void draw_one(Distractor& distractor, std::size_t which, const Recipe& recipe, D
       distractor_key(distractor.number, std::string_view(drawn.key).substr(k_section.size()));
   const DrawnValue value = draw(drawn.distribution, key, of);
   distractor.draws[which] = value;
-  std::copy_n(value.begin(), width_of(drawn.distribution.kind), drawn.at(distractor.values));
+  if (drawn.at != nullptr)
+    std::copy_n(value.begin(), width_of(drawn.distribution.kind), drawn.at(distractor.values));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "builder/recipe/shared.h"
+#include "builder/recipe/value.h"
 #include "builder/recipe/variables.h"
 
 #include <cstdint>
@@ -36,12 +37,23 @@ struct DistractorModel {
   std::optional<std::uint64_t> fold;
 };
 
+/// A pattern of materials.vary, distractors.vary or environments.vary.
+struct VaryPattern {
+  std::string pattern;      ///< "*.uroughness", "office/lamp.emission.gain"
+  std::string environment;  ///< which: a pattern too
+  std::string node, property;
+  bool optional = false;  ///< "?": what has no such property is left as it is
+  std::size_t drawn = 0;  ///< index of Recipe::drawn
+  RecipeValue value;      ///< the distribution as the recipe has it
+};
+
 /// [distractors] of a recipe.
 struct DistractorSettings {
   std::vector<DistractorModel> models;  ///< by name; none: no image shows any
   bool of_recipe = false;               ///< they are the recipe's own
   std::string folder;                   ///< else the name of theirs
-  std::vector<Drawn> drawn;             ///< for each distractor: place_m, size_m, turn
+  std::vector<Drawn> drawn;             ///< for each distractor: place_m, size_m, turn, vary's
+  std::vector<VaryPattern> vary;        ///< of its material; `drawn` is of the list above
   double gap_m = 0;
   int tries = 0;
   bool own = false;  ///< an image's own model may be one, too

@@ -196,6 +196,7 @@ Recipe read_recipe(const fs::path& file, const std::vector<std::string>& overrid
   recipe.drawn = drawn_of(settings);
   recipe.distractors.drawn = take_draws_of_each(recipe.drawn);
   read_vary(settings, recipe);
+  read_distractor_vary(settings, recipe);
   read_environment_vary(settings, recipe);
   read_recipe_lights(settings, recipe);
   CameraViews views = make_cameras(settings, recipe.constants);

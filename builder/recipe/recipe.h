@@ -84,16 +84,6 @@ struct SplitSettings {
   int folds = 0;            ///< 0: none
 };
 
-/// A pattern of materials.vary or environments.vary.
-struct VaryPattern {
-  std::string pattern;      ///< "*.uroughness", "office/lamp.emission.gain"
-  std::string environment;  ///< which: a pattern too
-  std::string node, property;
-  bool optional = false;  ///< "?": what has no such property is left as it is
-  std::size_t drawn = 0;  ///< index of Recipe::drawn
-  RecipeValue value;      ///< the distribution as the recipe has it
-};
-
 /// camera.keep: what a view that was drawn must fulfil.
 struct KeepSettings {
   double in_frame = 0, visible = 0;  ///< least shares

@@ -11,7 +11,8 @@
 namespace ds {
 namespace {
 
-constexpr std::string_view k_materials = "materials.vary", k_environments = "environments.vary";
+constexpr std::string_view k_materials = "materials.vary", k_environments = "environments.vary",
+                           k_distractors = "distractors.vary";
 
 /// Whether a list of three numbers stands for it, or is among what it chooses.
 bool is_of_colours(const RecipeValue& value) {
@@ -66,7 +67,7 @@ bool take_apart(VaryPattern& vary, bool of_environment) {
          vary.property.find('*') == std::string::npos;
 }
 
-void read_patterns(const Settings& settings, std::string_view key, Recipe& recipe,
+void read_patterns(const Settings& settings, std::string_view key, std::vector<Drawn>& all,
                    std::vector<VaryPattern>& to) {
   const bool of_environment = key == k_environments;
   for (const auto& [text, value] : *settings.find(key)->table()) {
@@ -75,7 +76,7 @@ void read_patterns(const Settings& settings, std::string_view key, Recipe& recip
     };
     VaryPattern vary;
     vary.pattern = text;
-    vary.drawn = recipe.drawn.size();
+    vary.drawn = all.size();
     vary.value = value;
     if (!take_apart(vary, of_environment)) {
       complain(value, of_environment
@@ -92,8 +93,8 @@ void read_patterns(const Settings& settings, std::string_view key, Recipe& recip
     auto distribution = read_distribution(
         drawn, kind, of_environment ? NumberRange{} : range_of(vary.property), complain);
     if (!distribution) continue;
-    recipe.drawn.push_back({fmt::format("{}.{}", key, vary.pattern), to_toml(with_numbers(drawn)),
-                            *std::move(distribution), nullptr});
+    all.push_back({fmt::format("{}.{}", key, vary.pattern), to_toml(with_numbers(drawn)),
+                   *std::move(distribution), nullptr});
     to.push_back(std::move(vary));
   }
 }
@@ -108,17 +109,32 @@ RecipeValue as_distribution(const RecipeValue& value) {
   return {std::move(table), value.place, value.from_set};
 }
 
+Vec3d vary_value(const VaryPattern& vary, const std::vector<Drawn>& drawn,
+                 const DrawnValues& values) {
+  const DrawnValue& value = values[vary.drawn];
+  if (drawn[vary.drawn].distribution.kind == DrawnKind::number)
+    return {value[0], value[0], value[0]};
+  return {value[0], value[1], value[2]};
+}
+
 DrawnKind kind_of_vary(const RecipeValue& value) {
   if (is_of_points(value)) return DrawnKind::point;
   return is_of_colours(value) ? DrawnKind::colour : DrawnKind::number;
 }
 
 void read_vary(const Settings& settings, Recipe& recipe) {
-  read_patterns(settings, k_materials, recipe, recipe.vary);
+  read_patterns(settings, k_materials, recipe.drawn, recipe.vary);
+}
+
+void read_distractor_vary(const Settings& settings, Recipe& recipe) {
+  DistractorSettings& distractors = recipe.distractors;
+  read_patterns(settings, k_distractors, distractors.drawn, distractors.vary);
+  if (recipe.assign_materials == Assign::own && !distractors.vary.empty())
+    settings.complain(k_distractors, "has no effect with materials.assign = \"own\"");
 }
 
 void read_environment_vary(const Settings& settings, Recipe& recipe) {
-  read_patterns(settings, k_environments, recipe, recipe.environment_vary);
+  read_patterns(settings, k_environments, recipe.drawn, recipe.environment_vary);
 }
 
 }  // namespace ds

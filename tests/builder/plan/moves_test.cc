@@ -194,6 +194,7 @@ std::vector<Flip> Moving::flips() const {
       {"distractors.place_m", "{disc=0.3}", "{disc=0.4}", {k_others}},
       {"distractors.size_m", "0.05", "0.06", {k_others, k_places}},
       {"distractors.turn", "\"none\"", "{rotation=\"up\"}", {k_others, k_places}},
+      {"distractors.vary", "{}", "{\"*.kd\"={uniform=[0.1,0.2]}}", {k_others, k_places}},
       {"distractors.gap_m", "0", "0.2", {k_others, k_places}},
       {"distractors.tries", "1", "64", {k_others, "distractors.place_m={disc=0.2}"}},
       {"distractors.own", "false", "true", {k_others, k_places}},
