@@ -53,7 +53,7 @@ constexpr ConcernText k_texts[] = {
      true},
     {"distractors_unplaced",
      "images show fewer distractors than were drawn, for want of places or of other models"},
-    {"draws_idle", "keys that are drawn change nothing of any image"},
+    {"draws_idle", "distributions have no effect on any image"},
 };
 
 const ConcernText& text_of(const Concern& concern) {

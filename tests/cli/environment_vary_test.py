@@ -101,6 +101,16 @@ class EnvironmentVaryTest(LitFloorCase):
         self.assertIn("did you mean lamp.gain?", run.err, run)
         self.assertEqual(run.err.count("gian"), 1, run)
 
+    def test_a_distribution_without_effect_is_said_once_and_counted(self):
+        # Watts without lumens a watt: the lamp's gain counts.
+        self.recipe.write_text(self.plain + VARY + '"floor/lamp.power" = { uniform = [1, 2] }\n')
+        run = self.run_it("build", self.recipe, "-o", self.out, "--json")
+        self.assertEqual(run.code, 0, run)
+        self.assertEqual(run.json["concerns"]["draws_idle"], 1)
+        self.assertEqual(run.err.count("1 of 3 distributions has no effect on any image: environments.vary.floor/lamp.power"), 1, run)
+        told = json.loads((self.out / "manifest/dataset.json").read_text())["concerns"]["draws_idle"]
+        self.assertEqual((told["count"], told["of"]), (1, 3))
+
 
 if __name__ == "__main__":
     main()
