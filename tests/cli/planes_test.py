@@ -2,13 +2,25 @@
 """Planes of images, from recipe to files, as a reader of the files and the manifest sees them."""
 import json
 import math
+import pathlib
+import re
 
 import image_reader
 from harness import IMAGES, TinyCase, main
 
-FLOATS = ["depth", "distance", "position", "geometry_normal", "shading_normal", "uv"]
-ALL = ["mask", "amodal_mask", "object_id", "material_id", *FLOATS]
-LIGHT = ["emission", "direct_diffuse", "direct_glossy", "indirect_diffuse", "indirect_glossy", "indirect_specular"]
+def table():
+    """The planes' table of the recipes' reference: encodings and convention by name."""
+    text = pathlib.Path(__file__).parents[2].joinpath("recipes/README.md").read_text()
+    return {name: (encodings.split(", "), convention) for name, encodings, convention in
+            re.findall(r"^\| `(\w+)` \| \d+ \| ([a-z0-9, ]+) \| (.+) \|$", text, re.MULTILINE)}
+
+
+PLANES = table()
+# Parts that add up to the picture; of the rest what is asked by one ray, but for what materials are.
+LIGHT = [name for name, (_, told) in PLANES.items() if "linear radiance before" in told and "premultiplied" not in told]
+ALL = [name for name, (_, told) in PLANES.items()
+       if "linear radiance before" not in told and "samples" not in told and name != "albedo"]
+FLOATS = [name for name in ALL if PLANES[name][0][0] == "exr"]
 
 
 def planes(*names):
