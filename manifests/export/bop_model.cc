@@ -46,7 +46,7 @@ double diameter_of(const std::vector<Vec3d>& points) {
 
 Silhouette found_on(const Canvas& canvas, int width, int height) {
   Silhouette s;
-  std::array<int, 4> box{3 * width, 3 * height, -1, -1};
+  std::array<int, 4> box{2 * width, 2 * height, -width - 1, -height - 1};
   canvas.visit([&](int x, int y) {
     ++s.pixels;
     if (x >= 0 && y >= 0 && x < width && y < height) s.inside.push_back({x, y});

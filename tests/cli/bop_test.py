@@ -124,6 +124,36 @@ class BopTest(TinyCase):
                     self.assertGreater(labels["px_count_all"], len(whole))
         self.assertGreater(cut, 0, "the view is chosen to cut some")
 
+    def project(self, folder, image, models):
+        """Where BOP's own numbers put a model's triangles in the picture, pixel centres at whole numbers."""
+        camera, pose = self.load(f"{folder}/scene_camera.json")[image], self.load(f"{folder}/scene_gt.json")[image][0]
+        k, (points, faces) = camera["cam_K"], models[pose["obj_id"]]
+        in_camera = [applied(pose["cam_R_m2c"], pose["cam_t_m2c"], p) for p in points]
+        seen = [(k[0] * p[0] / p[2] + k[2], k[4] * p[1] / p[2] + k[5]) for p in in_camera]
+        return [[seen[v] for v in face] for face in faces]
+
+    def test_what_is_wholly_beside_the_picture_has_its_box(self):
+        # Left of it, above, right, below, and over the corner where rows and columns are less than none.
+        for target in ([0.7, 0, 0.05], [-0.7, 0, 0.05], [0, 0, -0.6], [0, 0, 0.7], [0.7, 0, -0.6]):
+            self.export("--set", f"camera.target={target}", "--set", "camera.set=list",
+                        "--set", "camera.positions=[[0,0.9,0.05]]")
+            models, beside = {i: read_ply(self.to / f"models/obj_{i:06}.ply") for i in (1, 2)}, 0
+            for split in ("train", "test"):
+                folder = f"{split}/000000"
+                for image, (labels,) in self.load(f"{folder}/scene_gt_info.json").items():
+                    triangles = self.project(folder, image, models)
+                    inside = [(x, y) for y in range(-64, 128) for x in range(-96, 192)
+                              if any(covers(*t, x, y) for t in triangles)]
+                    xs, ys = [x for x, _ in inside], [y for _, y in inside]
+                    hidden = max(xs) < -1 or max(ys) < -1 or min(xs) > 96 or min(ys) > 64
+                    beside += hidden
+                    right = [min(xs), min(ys), max(xs) - min(xs), max(ys) - min(ys)]
+                    for found, wanted in zip(labels["bbox_obj"], right):  # but for a centre on an edge
+                        self.assertAlmostEqual(found, wanted, delta=1, msg=(target, labels, right))
+                    if hidden:
+                        self.assertEqual((labels["bbox_visib"], labels["px_count_visib"]), ([-1, -1, -1, -1], 0))
+            self.assertGreater(beside, 0, f"{target} is chosen to show nothing")
+
     def test_depths_as_they_are_in_png(self):
         self.export("--set", 'outputs.planes=["mask", "amodal_mask", "depth:png16"]')
         self.assertEqual(self.load("camera.json")["depth_scale"], 1.0)
