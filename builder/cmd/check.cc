@@ -33,6 +33,21 @@ void print(const CheckFinding& finding) {
   say(Stream::result, "{}\n", text);
 }
 
+template <typename Facts>
+std::size_t known(const std::vector<std::optional<Facts>>& facts) {
+  return static_cast<std::size_t>(
+      std::count_if(facts.begin(), facts.end(), [](const auto& one) { return one.has_value(); }));
+}
+
+/// What the checks of files had to look at: nothing is found where nothing is there.
+std::string files_text(const CheckInput& input) {
+  const std::size_t pictures = known(input.files.pictures), depths = known(input.files.depths);
+  std::string text =
+      fmt::format("; of {} the picture was read, of {} depth and mask", pictures, depths);
+  if (depths == 0) text += " (depths wants outputs.planes mask and depth)";
+  return text;
+}
+
 }  // namespace
 
 int run_check(const Arguments& arguments) {
@@ -47,7 +62,7 @@ int run_check(const Arguments& arguments) {
   const bool pictures = arguments.pictures || any_reads_pictures(arguments.only);
   if (pictures) {
     WorkProgress progress("pictures read");
-    input.pictures = read_picture_facts(
+    input.files = read_file_facts(
         folder, input.images,
         [&](const std::string& why) {
           ++unreadable;
@@ -66,6 +81,8 @@ int run_check(const Arguments& arguments) {
                 {"errors", errors},
                 {"warnings", warnings},
                 {"pictures_read", pictures},
+                {"pictures", known(input.files.pictures)},
+                {"depths", known(input.files.depths)},
                 {"unreadable", unreadable},
                 {"findings", to_json(findings)}});
   } else {
@@ -73,7 +90,7 @@ int run_check(const Arguments& arguments) {
       print(finding);
     say(Stream::result, "{} images checked: {} error{}, {} warning{}{}\n", input.images.size(),
         errors, errors == 1 ? "" : "s", warnings, warnings == 1 ? "" : "s",
-        pictures ? "" : "; --pictures reads the pictures, too");
+        pictures ? files_text(input) : "; --pictures reads the pictures, too");
     if (unreadable > 0)
       say(Stream::result, "of {} images the files could not be read\n", unreadable);
   }

@@ -376,7 +376,8 @@ void add_option(CLI::App& verb, Option option, CommandLine& line) {
       return;
     case Option::pictures:
       verb.add_flag("--pictures", to.pictures,
-                    "read the pictures, too: near duplicates, contrast, fireflies");
+                    "read the files of images, too: near_duplicates, contrast, fireflies of "
+                    "pictures, depths of depth and mask");
       return;
     case Option::report_file:
       verb.add_option("-o,--output", to.report_file,

@@ -108,7 +108,7 @@ std::vector<CheckFinding> run_checks(const CheckInput& input,
   for (const Check& check : checks()) {
     if (!names.empty() && std::find(names.begin(), names.end(), check.name) == names.end())
       continue;
-    if (check.reads_pictures && input.pictures.empty()) continue;
+    if (check.reads_pictures && input.files.pictures.empty()) continue;
     CheckReport report(check.name);
     check.run(input, report);
     std::vector<CheckFinding> found = std::move(report).take();

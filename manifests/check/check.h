@@ -51,8 +51,8 @@ struct Threshold {
 struct CheckInput {
   DatasetRecord dataset;
   std::vector<ImageRecord> images;  ///< ordered by id
-  /// Of each of the images (read_picture_facts); empty where no picture was read.
-  std::vector<std::optional<PictureFacts>> pictures{};
+  /// Of each of the images (read_file_facts); empty where no file was read.
+  FileFacts files{};
   /// Settings of the recipe as it is now, of which the thresholds are taken; without it those are the
   /// manifest's, too.
   std::optional<std::string> recipe_now{};
@@ -89,7 +89,7 @@ struct Check {
   const char* help;  ///< one line
   void (*run)(const CheckInput& input, CheckReport& report);
   std::vector<Threshold> thresholds{};
-  bool reads_pictures = false;  ///< runs only where CheckInput::pictures are there
+  bool reads_pictures = false;  ///< runs only where CheckInput::files are there
 };
 
 /// In alphabetical order.

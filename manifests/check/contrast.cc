@@ -16,10 +16,10 @@ void check_contrast(const CheckInput& input, CheckReport& report) {
   const double least = input.threshold(k_least);
   std::vector<std::string> faint;
   std::uint64_t outlined = 0;
-  for (std::size_t i = 0; i < input.pictures.size(); ++i) {
-    if (!input.pictures[i] || !input.pictures[i]->edge_contrast) continue;
+  for (std::size_t i = 0; i < input.files.pictures.size(); ++i) {
+    if (!input.files.pictures[i] || !input.files.pictures[i]->edge_contrast) continue;
     ++outlined;
-    if (*input.pictures[i]->edge_contrast < least) faint.push_back(input.images[i].id);
+    if (*input.files.pictures[i]->edge_contrast < least) faint.push_back(input.images[i].id);
   }
   report.add(
       CheckLevel::warning,

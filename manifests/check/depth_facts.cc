@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -70,6 +71,51 @@ std::optional<double> nearest_around(const DepthView& view, Vec3d pixel) {
   return nearest;
 }
 
+/// The corners, turn by turn, of what 3 x 3 pixels show where that is one flat piece of the model: each
+/// two that lie opposite have the middle's depth between them, but for `far`.
+std::optional<std::array<Vec3d, 4>> piece_around(const DepthView& view, std::size_t pixel,
+                                                 double far) {
+  const ImageRecord& record = *view.record;
+  const auto width = static_cast<std::size_t>(record.width);
+  const int x = static_cast<int>(pixel % width), y = static_cast<int>(pixel / width);
+  if (x < 1 || y < 1 || x + 1 >= record.width || y + 1 >= record.height) return std::nullopt;
+  std::array<Vec3d, 4> corners;
+  std::size_t corner = 0;
+  for (const auto& [dx, dy] :
+       {std::pair(-1, -1), std::pair(1, -1), std::pair(1, 0), std::pair(0, 1)}) {
+    const std::size_t step = static_cast<std::size_t>(dy) * width + static_cast<std::size_t>(dx);
+    const std::size_t before = pixel - step, behind = pixel + step;  // modulo 2^64, also backwards
+    if (view.mask[before] == 0 || view.mask[behind] == 0) return std::nullopt;
+    const double a = double{view.depth[before]}, b = double{view.depth[behind]};
+    if (!(a > 0) || !(b > 0)) return std::nullopt;
+    // Of a plane, 1 / depth is linear over a pinhole's picture.
+    const double between = record.intrinsics ? 2 / (1 / a + 1 / b) : (a + b) / 2;
+    if (!(std::abs(between - double{view.depth[pixel]}) <= far)) return std::nullopt;
+    if (dx == 0 || dy == 0) continue;
+    corners.at(corner) = point_at(record, x + dx, y + dy, b);
+    corners.at(corner + 2) = point_at(record, x - dx, y - dy, a);
+    ++corner;
+  }
+  return corners;
+}
+
+/// The piece's greatest depth, where it hides what lies behind it from the middle of the pixel at that place.
+std::optional<double> depth_over_middle(const std::array<Vec3d, 4>& piece, const ImageRecord& other,
+                                        Vec3d there) {
+  const double x = std::floor(there.x) + 0.5, y = std::floor(there.y) + 0.5;
+  int left = 0, right = 0;
+  double farthest = 0;
+  for (std::size_t i = 0; i < piece.size(); ++i) {
+    const Vec3d a = pixel_of(other, piece.at(i)), b = pixel_of(other, piece.at((i + 1) % 4));
+    if (!(a.z > 0)) return std::nullopt;
+    farthest = std::max(farthest, a.z);
+    const double turn = (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
+    left += turn > 0 ? 1 : 0;
+    right += turn < 0 ? 1 : 0;
+  }
+  return left == 4 || right == 4 ? std::optional(farthest) : std::nullopt;
+}
+
 }  // namespace
 
 Vec3d point_at(const ImageRecord& record, int x, int y, double depth) {
@@ -132,9 +178,11 @@ DepthFacts depth_facts(const DepthView& own, const DepthView* other) {
     if (other == nullptr || number++ % stride != 0) continue;
     const Vec3d there = pixel_of(*other->record, point);
     const auto nearest = nearest_around(*other, there);
-    if (!nearest) continue;
+    const auto piece = nearest ? piece_around(own, i, far) : std::nullopt;
+    const auto deepest = piece ? depth_over_middle(*piece, *other->record, there) : std::nullopt;
+    if (!deepest) continue;
     ++facts.compared;
-    facts.missed += *nearest > there.z + far + there.z * k_rounding ? 1U : 0U;
+    facts.missed += *nearest > *deepest + far + *deepest * k_rounding ? 1U : 0U;
   }
   return facts;
 }

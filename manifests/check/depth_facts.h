@@ -32,9 +32,11 @@ Vec3d pixel_of(const ImageRecord& record, Vec3d point);
 /// The eight corners of the box around the model, in the world.
 std::array<Vec3d, 8> corners_of(const ModelPose& pose);
 
-/// `other`: another image of the model at the same place, or none. A place is missed where the other
-/// image sees farther in all 3 x 3 pixels around it, by more than a hundredth of the model's size: what hides
-/// it is nearer, and what is thinner than a pixel is seen by some. About 1,000 places are compared.
+/// `other`: another image of the model at the same place, or none. A place is compared where the other
+/// image must show it or what hides it: 3 x 3 pixels around it show one flat piece of the model, and that
+/// piece covers the middle of the other image's pixel there, which what is thin or seen from its edge need
+/// not. It is missed where the other sees farther in all 3 x 3 pixels around it, by more than a hundredth of
+/// the model's size. Of about 1,000 places it is asked.
 DepthFacts depth_facts(const DepthView& own, const DepthView* other);
 
 }  // namespace ds

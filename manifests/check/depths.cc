@@ -17,6 +17,9 @@ constexpr Threshold k_missed{"depths_missed",
                              "Share of the places that one view's depths show of a model behind "
                              "which another view may see"};
 
+/// Fewer places than these tell nothing: rods and the gaps between them may look like one piece.
+constexpr std::uint64_t k_least_compared = 20;
+
 void check_depths(const CheckInput& input, CheckReport& report) {
   const double elsewhere = input.threshold(k_elsewhere), missed = input.threshold(k_missed);
   std::vector<std::string> off, apart;
@@ -24,13 +27,14 @@ void check_depths(const CheckInput& input, CheckReport& report) {
   const auto is_over = [](std::uint64_t part, std::uint64_t whole, double most) {
     return static_cast<double>(part) > most * static_cast<double>(whole);
   };
-  for (std::size_t i = 0; i < input.pictures.size(); ++i) {
-    if (!input.pictures[i] || !input.pictures[i]->depth) continue;
-    const DepthFacts& facts = *input.pictures[i]->depth;
+  for (std::size_t i = 0; i < input.files.depths.size(); ++i) {
+    if (!input.files.depths[i]) continue;
+    const DepthFacts& facts = *input.files.depths[i];
     shown += facts.shown > 0 ? 1U : 0U;
-    compared += facts.compared > 0 ? 1U : 0U;
+    compared += facts.compared >= k_least_compared ? 1U : 0U;
     if (is_over(facts.elsewhere, facts.shown, elsewhere)) off.push_back(input.images[i].id);
-    if (is_over(facts.missed, facts.compared, missed)) apart.push_back(input.images[i].id);
+    if (facts.compared >= k_least_compared && is_over(facts.missed, facts.compared, missed))
+      apart.push_back(input.images[i].id);
   }
   const std::string advice = "depth, mask and manifest are not of one picture: dsbuild verify";
   report.add(CheckLevel::error,

@@ -17,10 +17,10 @@ void check_fireflies(const CheckInput& input, CheckReport& report) {
   const double most = input.threshold(k_most);
   std::vector<std::string> specked;
   std::uint64_t pictures = 0;
-  for (std::size_t i = 0; i < input.pictures.size(); ++i) {
-    if (!input.pictures[i]) continue;
+  for (std::size_t i = 0; i < input.files.pictures.size(); ++i) {
+    if (!input.files.pictures[i]) continue;
     ++pictures;
-    const PictureFacts& facts = *input.pictures[i];
+    const PictureFacts& facts = *input.files.pictures[i];
     if (static_cast<double>(facts.specks) > most * static_cast<double>(facts.pixels))
       specked.push_back(input.images[i].id);
   }

@@ -61,11 +61,11 @@ void check_near_duplicates(const CheckInput& input, CheckReport& report) {
   const double distance = input.threshold(k_distance);
   std::vector<std::pair<std::uint64_t, std::size_t>> parts;
   std::uint64_t pictures = 0;
-  for (std::size_t i = 0; i < input.pictures.size(); ++i) {
-    if (!input.pictures[i]) continue;
+  for (std::size_t i = 0; i < input.files.pictures.size(); ++i) {
+    if (!input.files.pictures[i]) continue;
     ++pictures;
     for (unsigned part = 0; part < 4; ++part)
-      parts.emplace_back(part_of(input.pictures[i]->gradient, part), i);
+      parts.emplace_back(part_of(input.files.pictures[i]->gradient, part), i);
   }
   std::sort(parts.begin(), parts.end());
   // Of each picture the first found that it is like, by what divides the two.
@@ -74,7 +74,7 @@ void check_near_duplicates(const CheckInput& input, CheckReport& report) {
   for (std::size_t i = 0; i < parts.size(); ++i)
     for (std::size_t j = i + 1; j < parts.size() && parts[j].first == parts[i].first; ++j) {
       const std::size_t a = parts[i].second, b = parts[j].second;
-      const PictureFacts &facts_a = *input.pictures[a], &facts_b = *input.pictures[b];
+      const PictureFacts &facts_a = *input.files.pictures[a], &facts_b = *input.files.pictures[b];
       const std::uint64_t bits = facts_a.gradient ^ facts_b.gradient;
       if (std::popcount(bits) > k_most_bits || first_equal_part(bits) != parts[i].first >> 16)
         continue;  // the other equal parts bring the pair again

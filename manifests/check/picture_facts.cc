@@ -219,19 +219,21 @@ std::vector<std::size_t> other_views(const std::vector<ImageRecord>& images) {
 
 }  // namespace
 
-std::vector<std::optional<PictureFacts>> read_picture_facts(
-    const std::filesystem::path& folder, const std::vector<ImageRecord>& images,
-    const std::function<void(const std::string& why)>& failed,
-    const std::function<void(std::uint64_t done, std::uint64_t all)>& done) {
-  std::vector<std::optional<PictureFacts>> facts(images.size());
+FileFacts read_file_facts(const std::filesystem::path& folder,
+                          const std::vector<ImageRecord>& images,
+                          const std::function<void(const std::string& why)>& failed,
+                          const std::function<void(std::uint64_t done, std::uint64_t all)>& done) {
+  FileFacts facts;
+  facts.pictures.resize(images.size());
+  facts.depths.resize(images.size());
   const std::vector<std::size_t> others = other_views(images);
   std::mutex mutex;
   std::uint64_t finished = 0;
   const auto look = [&](std::size_t i) {
-    const auto picture = read_kind(folder, images[i], "image");
-    if (!picture) return;
-    const auto mask = read_kind(folder, images[i], "mask");
-    facts[i] = facts_of(*picture, mask ? &*mask : nullptr);
+    if (const auto picture = read_kind(folder, images[i], "image")) {
+      const auto mask = read_kind(folder, images[i], "mask");
+      facts.pictures[i] = facts_of(*picture, mask ? &*mask : nullptr);
+    }
     const auto own = read_depths(folder, images[i]);
     if (!own) return;
     std::optional<DepthView> other;
@@ -239,7 +241,7 @@ std::vector<std::optional<PictureFacts>> read_picture_facts(
       if (others[i] != i) other = read_depths(folder, images[others[i]]);
     } catch (const Error&) {  // told where that image is looked at
     }
-    facts[i]->depth = depth_facts(*own, other ? &*other : nullptr);
+    facts.depths[i] = depth_facts(*own, other ? &*other : nullptr);
   };
   parallel_ranges(images.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

@@ -32,8 +32,6 @@ struct PictureFacts {
   /// Mean over places where the mask's edge crosses a row or a column of the largest channel's
   /// |a - b|, one pixel inside the edge and one outside; absent where there is no edge or no mask.
   std::optional<double> edge_contrast{};
-  /// Absent where the image has no depth, no mask or no pose.
-  std::optional<DepthFacts> depth{};
 };
 
 /// `mask`: of the same size, one channel, 0 where the model is not seen; or nothing.
@@ -42,12 +40,17 @@ PictureFacts facts_of(const DecodedImage& picture, const DecodedImage* mask);
 /// Whether the root mean square of the differences of two thumbnails is `distance` at most.
 bool are_alike(const PictureFacts& a, const PictureFacts& b, double distance);
 
-/// The facts of each image's picture, on all processors; nothing for an image without one and where
-/// its files cannot be read, which `failed` is told with the reason. `done` may be called from any
-/// thread, one at a time.
-std::vector<std::optional<PictureFacts>> read_picture_facts(
-    const std::filesystem::path& folder, const std::vector<ImageRecord>& images,
-    const std::function<void(const std::string& why)>& failed,
-    const std::function<void(std::uint64_t done, std::uint64_t all)>& done);
+/// Of each image what its files tell.
+struct FileFacts {
+  std::vector<std::optional<PictureFacts>> pictures;  ///< absent where it has no picture
+  std::vector<std::optional<DepthFacts>> depths;      ///< absent where no depth, mask or pose
+};
+
+/// On all processors; nothing of an image whose files cannot be read, which `failed` is told with the
+/// reason. `done` may be called from any thread, one at a time.
+FileFacts read_file_facts(const std::filesystem::path& folder,
+                          const std::vector<ImageRecord>& images,
+                          const std::function<void(const std::string& why)>& failed,
+                          const std::function<void(std::uint64_t done, std::uint64_t all)>& done);
 
 }  // namespace ds

@@ -107,6 +107,16 @@ class PlanesTest(TinyCase):
         for encoding in ("depth", "depth:half", "depth:png16"):
             self.build(*planes("mask", encoding))
             self.assertEqual(findings(), set(), encoding)
+        # Pictures are none of it, and what was there to look at is counted.
+        no_picture = ["--set", "outputs.image=false"]
+        self.build(*planes("mask"), *no_picture)
+        run = self.run_it("check", self.out, "--pictures", "--json")
+        self.assertEqual((run.json["pictures"], run.json["depths"]), (0, 0))
+        self.assertIn("of 0 the picture was read, of 0 depth and mask (depths wants", self.run_it("check", self.out, "--pictures").out)
+        self.build(*planes("mask", "depth"), *no_picture)
+        run = self.run_it("check", self.out, "--pictures", "--json")
+        self.assertEqual((run.json["pictures"], run.json["depths"]), (0, len(self.records())))
+        self.assertEqual(findings(), set())
         records = self.records()
         one, other = (self.out / file["path"] for record in records[:2] for file in record["files"] if file["kind"] == "depth")
         one.chmod(0o644), other.chmod(0o644)

@@ -146,6 +146,52 @@ TEST_P(Depths, WhatIsWrongIsFound) {
   }
 }
 
+/// A disc that has no thickness, before the wall.
+DepthView view_of_disc(const ImageRecord& record, Vec3d normal) {
+  DepthView view{&record, {}, {}};
+  const Vec3d at{record.camera_to_world[3], record.camera_to_world[7], record.camera_to_world[11]};
+  for (int y = 0; y < k_height; ++y)
+    for (int x = 0; x < k_width; ++x) {
+      // Two points of a ray tell it, of both cameras.
+      const Vec3d origin = record.intrinsics ? at : point_at(record, x, y, 0);
+      const Vec3d way = point_at(record, x, y, 1) - origin;
+      const double depth = dot(k_middle - origin, normal) / dot(way, normal);
+      const Vec3d off = origin + way * depth - k_middle;
+      const bool met = depth > 0 && dot(off, off) < k_radius * k_radius;
+      view.depth.push_back(static_cast<float>(met ? depth : 0.9));
+      view.mask.push_back(met ? 1 : 0);
+    }
+  return view;
+}
+
+// Seen from its edge it is a sixth of a pixel wide, and nearly all pixels' middles pass it by.
+TEST_P(Depths, OfWhatIsThinAreNotMissedFromItsEdge) {
+  const auto way_to = [](const ImageRecord& record) {
+    const auto& m = record.camera_to_world;
+    return GetParam() ? normalized(Vec3d{-m[2], -m[6], -m[10]})
+                      : normalized(Vec3d{m[3], m[7], m[11]} - k_middle);
+  };
+  const Vec3d front = way_to(front_), side = way_to(side_);
+  const Vec3d edge_on = normalized(front - side * dot(front, side)) + side * 0.004;
+  const DepthView own = view_of_disc(front_, edge_on);
+  const DepthView edge = view_of_disc(side_, edge_on);
+  const DepthFacts facts = depth_facts(own, &edge);
+  EXPECT_GT(facts.shown, 200U);
+  EXPECT_EQ(facts.elsewhere, 0U);
+  EXPECT_EQ(facts.missed, 0U) << facts.compared;
+  // Where the other sees its face it tells, and what is wrong is found.
+  const Vec3d between = normalized(front + side);
+  DepthView face = view_of_disc(front_, between);
+  const DepthView other = view_of_disc(side_, between);
+  const DepthFacts good = depth_facts(face, &other);
+  EXPECT_GT(good.compared, 500U);
+  EXPECT_EQ(good.missed, 0U);
+  for (float& depth : face.depth)
+    depth *= 0.9F;
+  const DepthFacts bad = depth_facts(face, &other);
+  EXPECT_GT(bad.missed * 20, bad.compared) << bad.missed;
+}
+
 INSTANTIATE_TEST_SUITE_P(OfBothCameras, Depths, testing::Bool());
 
 /// One image, seen as that view has it.
@@ -154,7 +200,8 @@ CheckInput input_of(const ImageRecord& record) {
   input.images = {record};
   const DepthView view = view_of(record);
   DepthFacts facts = depth_facts(view, nullptr);
-  input.pictures.emplace_back().emplace().depth = facts;
+  input.files.pictures.emplace_back();
+  input.files.depths.emplace_back(facts);
   std::uint64_t left = k_width, right = k_width, above = k_height, below = k_height;
   for (std::uint64_t y = 0; y < k_height; ++y)
     for (std::uint64_t x = 0; x < k_width; ++x)
@@ -183,7 +230,7 @@ TEST(PosesCheck, AMaskIsWhereItsPoseSays) {
     EXPECT_EQ(found[0].level, CheckLevel::error);
     EXPECT_THAT(found[0].what, HasSubstr("outside of the box that its pose"));
     EXPECT_THAT(found[0].images, ElementsAre("ball"));
-    input.pictures[0]->depth->elsewhere = input.pictures[0]->depth->shown / 10;
+    input.files.depths[0]->elsewhere = input.files.depths[0]->shown / 10;
     found = run_checks(input, {"depths"});
     ASSERT_EQ(found.size(), 1U);
     EXPECT_THAT(found[0].what, HasSubstr("depths where their model is not"));

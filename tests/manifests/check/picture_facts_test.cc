@@ -111,7 +111,7 @@ CheckInput with_pictures(const std::vector<DecodedImage>& pictures) {
     image.camera_to_world[3] = static_cast<double>(i);
     image.files.push_back({image.id + ".png", "image", {}, Hash128{1, i}});
     input.images.push_back(std::move(image));
-    input.pictures.emplace_back(facts_of(pictures[i], &mask));
+    input.files.pictures.emplace_back(facts_of(pictures[i], &mask));
   }
   return input;
 }
@@ -161,7 +161,7 @@ TEST(PictureChecks, FaintModelsAndSpecks) {
 
 TEST(PictureChecks, WithoutPicturesTheyDoNotRun) {
   CheckInput input = with_pictures({scene(16, 200), scene(16, 201)});
-  input.pictures.clear();
+  input.files.pictures.clear();
   for (const char* check : {"contrast", "fireflies", "near_duplicates"}) {
     EXPECT_TRUE(any_reads_pictures({"masks", check}));
     EXPECT_THAT(run_checks(input, {check}), IsEmpty());
