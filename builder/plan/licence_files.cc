@@ -8,6 +8,7 @@
 #include "tracer/base/utf8.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -38,10 +39,24 @@ constexpr std::string_view k_environments = "environments";
 /// The longest licences in use have 50 kB.
 constexpr std::uintmax_t k_most_bytes = 1U << 20U;
 
+/// Not empty, not blank or a rule alone, and no binary file.
+bool says_something(std::string_view text) {
+  return text.find('\0') == text.npos && std::any_of(text.begin(), text.end(), [](char c) {
+           const auto byte = static_cast<unsigned char>(c);
+           return byte >= 0x80 || std::isalnum(byte) != 0;
+         });
+}
+
 std::optional<std::string> read_text(const AssetText& kind, const fs::path& file) {
   try {
     const std::uintmax_t size = fs::file_size(file);
-    if (size <= k_most_bytes) return utf8_of(read_text_file(file));
+    if (size <= k_most_bytes) {
+      std::string text = utf8_of(read_text_file(file));
+      if (says_something(text)) return text;
+      warn(fmt::format("{}: holds no words, which is no {}; the manifest goes without it",
+                       file.string(), kind.what));
+      return std::nullopt;
+    }
     warn(fmt::format("{}: {} bytes are no {}; the manifest goes without it", file.string(), size,
                      kind.what));
   } catch (const std::exception& error) {

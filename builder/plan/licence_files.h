@@ -15,8 +15,8 @@ using NamedAssets = std::vector<std::pair<std::string, std::filesystem::path>>;
 
 /// The licence texts found beside assets, one folder up or in an asset that is a folder, as UTF-8, by
 /// "KIND/NAME": all files of the nearest of these folders that is_licence_name knows, and of a folder LICENSES
-/// there. Nothing for an asset without one. A licence that cannot be read, or is larger than
-/// licences are, is a warning and none: it costs nobody a dataset.
+/// there. Nothing for an asset without one. A licence that cannot be read, has no words, or is
+/// larger than licences are, is a warning and none: it costs nobody a dataset.
 std::vector<std::pair<std::string, std::string>> licences_beside(const std::string& kind,
                                                                  const NamedAssets& assets);
 /// Likewise of the texts that say where assets come from: is_source_name.

@@ -233,6 +233,14 @@ class ExportTest(TinyCase):
         self.assertIn("found none for models/box.off, models/tetra.ply, materials/green.mat and 3 more", run.err)
         for folder in ("models", "materials", "environments"):
             (self.tiny / folder / "LICENSE").write_text("SPDX-License-Identifier: MIT\n")
+        # What holds no words is no licence.
+        for nothing in (b"", b" \n\t\n", b"-----\n", b"\x00\x01MZ\x00"):
+            (self.tiny / "models/LICENSE").write_bytes(nothing)
+            run = self.run_it("plan", self.recipe, "-o", self.out, *strict)
+            self.assertEqual(run.code, 2, (nothing, run))
+            self.assertIn("found none for models/box.off, models/tetra.ply: put", run.err)
+            self.assertIn("models/LICENSE: holds no words, which is no licence", run.err)
+        (self.tiny / "models/LICENSE").write_text("SPDX-License-Identifier: MIT\n")
         self.assert_counts(self.build(*strict), traced=0)
 
     def test_sources_go_along_and_may_be_wanted(self):
@@ -241,6 +249,8 @@ class ExportTest(TinyCase):
         self.assertEqual(run.code, 2, run)
         self.assertIn('dataset.unsourced = "error" wants a source beside every asset, found none for models/box.off, '
                       "models/tetra.ply, materials/green.mat and 3 more: put a SOURCE file", run.err)
+        (self.tiny / "models/SOURCE.txt").write_text("")
+        self.assertIn("found none for models/box.off", self.run_it("plan", self.recipe, "-o", self.out, *strict).err)
         (self.tiny / "models/SOURCE.txt").write_text("Solids of Plato, https://example.org/solids.\nFound 2026.\n")
         self.assertIn("found none for materials/green.mat", self.run_it("plan", self.recipe, "-o", self.out, *strict).err)
         self.build()
