@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <tuple>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -33,6 +34,71 @@ class Merged {
 
  private:
   std::vector<std::size_t> above_;
+};
+
+struct Shaped {
+  ShapeNumbers numbers;
+  std::size_t mesh;
+  const ImageRecord* image;
+};
+
+/// Shapes by three of their numbers, those that vary most, in cells as wide as what is near: what is near a
+/// shape is in its cell or one beside it, so that a dataset's check takes no time of its models' square.
+class ShapeGrid {
+ public:
+  ShapeGrid(const std::vector<Shaped>& shapes, double near)
+      : shapes_(shapes), width_(near * k_shape_steps + 1) {
+    std::array<std::pair<double, std::size_t>, std::tuple_size_v<ShapeNumbers>> spreads;
+    for (std::size_t n = 0; n < spreads.size(); ++n)
+      spreads.at(n) = {-variance_of(n), n};
+    std::sort(spreads.begin(), spreads.end());
+    for (std::size_t k = 0; k < numbers_.size(); ++k)
+      numbers_.at(k) = spreads.at(k).second;
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+      cells_[cell_of(i)].push_back(i);
+  }
+
+  /// Those that may be near the i-th and come behind it, in order.
+  std::vector<std::size_t> behind(std::size_t i) const {
+    std::vector<std::size_t> found;
+    const Cell own = cell_of(i);
+    for (int z = -1; z <= 1; ++z)
+      for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) {
+          const auto cell = cells_.find({own[0] + x, own[1] + y, own[2] + z});
+          if (cell == cells_.end()) continue;
+          const auto& shapes = cell->second;
+          found.insert(found.end(), std::upper_bound(shapes.begin(), shapes.end(), i),
+                       shapes.end());
+        }
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+ private:
+  using Cell = std::array<long, 3>;
+
+  Cell cell_of(std::size_t i) const {
+    Cell cell{};
+    for (std::size_t k = 0; k < cell.size(); ++k)
+      cell.at(k) = static_cast<long>(shapes_[i].numbers.at(numbers_.at(k)) / width_);
+    return cell;
+  }
+  double variance_of(std::size_t number) const {
+    double sum = 0, squares = 0;
+    for (const Shaped& shape : shapes_) {
+      const double value = shape.numbers.at(number);
+      sum += value;
+      squares += value * value;
+    }
+    const auto count = static_cast<double>(shapes_.size());
+    return squares - sum * sum / std::max(count, 1.0);
+  }
+
+  const std::vector<Shaped>& shapes_;
+  double width_;
+  std::array<std::size_t, 3> numbers_{};
+  std::map<Cell, std::vector<std::size_t>> cells_;
 };
 
 }  // namespace
@@ -92,24 +158,20 @@ std::vector<const ImageRecord*> shaped_models(const CheckInput& input) {
 std::vector<ModelPair> near_pairs(const CheckInput& input, const Meshes& meshes) {
   const double near = input.threshold(k_leaks_near);
   if (near == 0) return {};
-  struct Shaped {
-    std::string_view shape;
-    const ImageRecord* image;
-  };
-  // Sorted by shape and so by its first number, beyond which none is near.
   std::vector<Shaped> models;
   for (const ImageRecord* image : shaped_models(input))
-    models.push_back({input.dataset.shapes.at(image->model), image});
+    if (const auto numbers = shape_numbers(input.dataset.shapes.at(image->model)))
+      models.push_back({*numbers, meshes.of(image->model), image});
   std::sort(models.begin(), models.end(), [](const Shaped& a, const Shaped& b) {
-    return std::tie(a.shape, a.image->model) < std::tie(b.shape, b.image->model);
+    return std::tie(a.numbers, a.image->model) < std::tie(b.numbers, b.image->model);
   });
+  const ShapeGrid grid(models, near);
   std::vector<ModelPair> pairs;
   for (std::size_t i = 0; i < models.size(); ++i)
-    for (std::size_t j = i + 1; j < models.size(); ++j) {
+    for (const std::size_t j : grid.behind(i)) {
       const Shaped &a = models[i], &b = models[j];
-      if (first_shape_number(b.shape) - first_shape_number(a.shape) > near) break;
-      if (meshes.of(a.image->model) == meshes.of(b.image->model)) continue;
-      if (shape_distance(a.shape, b.shape) <= near) pairs.push_back({a.image, b.image});
+      if (a.mesh != b.mesh && shape_distance(a.numbers, b.numbers) <= near)
+        pairs.push_back({a.image, b.image});
     }
   return pairs;
 }

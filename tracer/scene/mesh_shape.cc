@@ -7,15 +7,17 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <iterator>
 #include <limits>
+#include <tuple>
 #include <vector>
 
 namespace ds {
 namespace {
 
-constexpr std::size_t k_numbers = 19, k_digits = 4;
-constexpr double k_steps = 1e4, k_most_steps = 65535;
+constexpr std::size_t k_numbers = std::tuple_size_v<ShapeNumbers>, k_digits = 4;
+constexpr double k_most_steps = 65535;
 
 /// A symmetric matrix: xx, yy, zz, xy, xz, yz.
 using Symmetric = std::array<double, 6>;
@@ -188,32 +190,34 @@ std::string shape_of(const FileMesh& mesh) {
     numbers.push_back(std::sqrt(value));
   std::string text;
   for (const double number : numbers)
-    fmt::format_to(
-        std::back_inserter(text), "{:04x}",
-        static_cast<unsigned>(std::clamp(std::floor(number * k_steps + 0.5), 0.0, k_most_steps)));
+    fmt::format_to(std::back_inserter(text), "{:04x}",
+                   static_cast<unsigned>(
+                       std::clamp(std::floor(number * k_shape_steps + 0.5), 0.0, k_most_steps)));
   return text;
 }
 
-double first_shape_number(std::string_view shape) {
-  int value = 0;
-  if (shape.size() >= k_digits) std::from_chars(shape.data(), shape.data() + k_digits, value, 16);
-  return value / k_steps;
+std::optional<ShapeNumbers> shape_numbers(std::string_view shape) {
+  if (shape.size() != k_numbers * k_digits) return std::nullopt;
+  ShapeNumbers numbers{};
+  const char* at = shape.data();
+  for (std::uint16_t& number : numbers) {
+    if (std::from_chars(at, at + k_digits, number, 16).ptr != at + k_digits) return std::nullopt;
+    at += k_digits;
+  }
+  return numbers;
+}
+
+double shape_distance(const ShapeNumbers& a, const ShapeNumbers& b) {
+  int most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    most = std::max(most, std::abs(a[i] - b[i]));
+  return most / k_shape_steps;
 }
 
 double shape_distance(std::string_view a, std::string_view b) {
-  constexpr double k_far = std::numeric_limits<double>::infinity();
-  if (a.size() != k_numbers * k_digits || b.size() != a.size()) return k_far;
-  int most = 0;
-  for (std::size_t at = 0; at < a.size(); at += k_digits) {
-    int values[2]{};
-    const std::string_view texts[2]{a.substr(at, k_digits), b.substr(at, k_digits)};
-    for (std::size_t i = 0; i < 2; ++i) {
-      const char* const end = texts[i].data() + k_digits;
-      if (std::from_chars(texts[i].data(), end, values[i], 16).ptr != end) return k_far;
-    }
-    most = std::max(most, std::abs(values[0] - values[1]));
-  }
-  return most / k_steps;
+  const auto numbers_a = shape_numbers(a), numbers_b = shape_numbers(b);
+  if (!numbers_a || !numbers_b) return std::numeric_limits<double>::infinity();
+  return shape_distance(*numbers_a, *numbers_b);
 }
 
 }  // namespace ds

@@ -3,6 +3,9 @@
 
 #include "tracer/scene/mesh.h"
 
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -24,7 +27,13 @@ std::string shape_of(const FileMesh& mesh);
 
 /// The most that two of the numbers differ by; infinite where one of them is "" or is no shape.
 double shape_distance(std::string_view a, std::string_view b);
-/// The first of the numbers, by which shapes sort; of no shape 0.
-double first_shape_number(std::string_view shape);
+
+/// The numbers, in steps of 1 / k_shape_steps.
+using ShapeNumbers = std::array<std::uint16_t, 19>;
+inline constexpr double k_shape_steps = 1e4;
+/// Nothing for what is no shape.
+std::optional<ShapeNumbers> shape_numbers(std::string_view shape);
+/// The most that two of them differ by, not in steps.
+double shape_distance(const ShapeNumbers& a, const ShapeNumbers& b);
 
 }  // namespace ds

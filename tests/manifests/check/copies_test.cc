@@ -2,14 +2,21 @@
 // Copies of models planted in folds, splits and classes, as a recipe that draws sizes and turns shows them; and
 // licences that do not go with the dataset's.
 #include "manifests/check/check.h"
+#include "manifests/check/meshes.h"
 #include "tracer/base/error.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <optional>
+#include <random>
+#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace ds {
 namespace {
@@ -263,6 +270,45 @@ TEST(DatasetLicences, AssetsWithoutOneAreToldWhateverTheDatasets) {
                           "models/cup-0.ply; models/cup-1.ply; models/cup-2.ply",
                           HasSubstr("note: 4/10 models and scenes have a licence text that is none "
                                     "of those known by name (SPDX): models/mug-0.ply")));
+}
+
+// Of many shapes, in clusters and at the edges of what is near, those pairs that comparing all with all finds.
+TEST(NearPairs, AreThoseOfAllWithAll) {
+  std::mt19937 random(7);
+  CheckInput input;
+  std::vector<std::pair<std::string, std::array<int, 19>>> models;
+  for (int i = 0; i < 600; ++i) {
+    std::array<int, 19> numbers{};
+    for (std::size_t n = 0; n < numbers.size(); ++n)
+      numbers.at(n) = static_cast<int>(random() % 3 * 301 + random() % 2);
+    // A third is another with each number up to 310 steps beside it, 300 being near.
+    if (i % 3 == 2)
+      for (std::size_t n = 0; n < numbers.size(); ++n)
+        numbers.at(n) = models.back().second.at(n) + static_cast<int>(random() % 305);
+    ImageRecord image;
+    image.model = fmt::format("m{:03}.ply", i);
+    image.id = image.model + "/0";
+    image.parts[0] = hash_text(image.id);
+    image.pose = ModelPose{{}, {{0, 0, 0}, {1, 2, 3.0 + i}}};
+    std::string text;
+    for (const int number : numbers)
+      text += fmt::format("{:04x}", number);
+    input.dataset.shapes[image.model] = text;
+    input.images.push_back(image);
+    models.emplace_back(image.model, numbers);
+  }
+  std::set<std::pair<std::string, std::string>> right, found;
+  for (std::size_t i = 0; i < models.size(); ++i)
+    for (std::size_t j = i + 1; j < models.size(); ++j) {
+      int most = 0;
+      for (std::size_t n = 0; n < 19; ++n)
+        most = std::max(most, std::abs(models[i].second.at(n) - models[j].second.at(n)));
+      if (most <= 300) right.emplace(models[i].first, models[j].first);
+    }
+  for (const auto& [a, b] : near_pairs(input, Meshes(input.images, input.dataset.shapes)))
+    EXPECT_TRUE(found.emplace(std::min(a->model, b->model), std::max(a->model, b->model)).second);
+  EXPECT_GT(right.size(), 50U);
+  EXPECT_EQ(found, right);
 }
 
 }  // namespace
