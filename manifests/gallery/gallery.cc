@@ -123,7 +123,7 @@ GalleryResult write_gallery(const GalleryRequest& request,
                      request.notes, worst_first(run_checks(input, {}))};
   // Of most datasets nothing has changed, and nothing is written.
   if (is_whole_folder(place, k_gallery_folder))
-    if (const auto made = standing_gallery_files(place, images)) {
+    if (const auto made = standing_gallery_files(request.folder, place, images)) {
       const Files files = texts_of(facts, lines, images, *made);
       if (stands(place, files, *made)) {
         remove_leftovers(place, k_gallery_folder);

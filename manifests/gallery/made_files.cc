@@ -156,7 +156,22 @@ class Maker {
     result_.extras[image].box = box;
   }
 
-  MadeFiles take() && { return std::move(result_); }
+  /// What the page shows as it is must be there, of the size that the manifest says.
+  void look_for_shown(std::size_t index, const ImageRecord& image) {
+    if (std::any_of(image.files.begin(), image.files.end(), [&](const FileRecord& file) {
+          std::error_code error;
+          return is_shown_by_browsers(file) &&
+                 fs::file_size(dataset_ / file.path, error) != file.hashes.size_bytes;
+        }))
+      result_.broken.push_back(index);
+  }
+
+  MadeFiles take() && {
+    auto& broken = result_.broken;
+    std::sort(broken.begin(), broken.end());
+    broken.erase(std::unique(broken.begin(), broken.end()), broken.end());
+    return std::move(result_);
+  }
 
  private:
   Done one(const Task& task) const {
@@ -179,8 +194,7 @@ class Maker {
 
   void keep(const Task& task, Done& done) {
     if (done.state == Done::State::broken) {
-      auto& broken = result_.broken;
-      if (broken.empty() || broken.back() != task.image) broken.push_back(task.image);
+      result_.broken.push_back(task.image);
       return;
     }
     ImageExtras& extras = result_.extras[task.image];
@@ -227,6 +241,7 @@ std::optional<MadeFiles> run_all(Maker& maker, const std::vector<ImageRecord>& i
       maker.set_box(i, counted_box(images[i]));
       for (Task& task : tasks_of(i, images[i]))
         tasks.push_back(std::move(task));
+      maker.look_for_shown(i, images[i]);
     }
     if (!maker.run(tasks)) return std::nullopt;
     done(end);
@@ -240,9 +255,9 @@ std::string gallery_file_stem(std::size_t image) {
   return fmt::format("{:02}/{:05}", image / 1000, image);
 }
 
-std::optional<MadeFiles> standing_gallery_files(const fs::path& gallery,
+std::optional<MadeFiles> standing_gallery_files(const fs::path& dataset, const fs::path& gallery,
                                                 const std::vector<ImageRecord>& images) {
-  Maker maker({}, gallery, images.size(), nullptr);
+  Maker maker(dataset, gallery, images.size(), nullptr);
   return run_all(maker, images, [](std::uint64_t) {});
 }
 

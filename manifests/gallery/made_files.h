@@ -28,8 +28,9 @@ struct MadeFiles {
 };
 
 /// What stands in a gallery, where all that would be made is there under its name, whole and of the sources
-/// as they are now.
-std::optional<MadeFiles> standing_gallery_files(const std::filesystem::path& gallery,
+/// as they are now; `broken` are those of which a file that the page shows as it is is gone.
+std::optional<MadeFiles> standing_gallery_files(const std::filesystem::path& dataset,
+                                                const std::filesystem::path& gallery,
                                                 const std::vector<ImageRecord>& images);
 
 /// Writes thumbnails and previews into the folder, on all processors; those of the gallery that it

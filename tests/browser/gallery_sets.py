@@ -7,7 +7,7 @@ import shutil
 import subprocess
 
 HOSTILE = ["<img src=x onerror=alert(1)>", "quote\"and'", "per%20cent#hash?q&a=b", "Gr\u00fc\u00dfe \u65e5\u672c",
-           "a b", "__proto__", "</script><script>alert(1)</script>"]
+           "-a b", "__proto__", "</script><script>alert(1)</script>"]
 
 
 def build_tiny(dsbuild, source, folder):

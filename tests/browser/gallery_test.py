@@ -3,6 +3,7 @@
 import base64
 import os
 import pathlib
+import shlex
 import shutil
 import subprocess
 import sys
@@ -115,7 +116,14 @@ class GalleryPage(unittest.TestCase):
         self.assertEqual(self.shown(), [line["id"] for line in self.sets["some"]])
         first = self.value("document.querySelector('.cell img').alt")
         line = self.sets["some"][0]
-        self.assertEqual(first, f"{line['class_path'].split('/')[1]}, {line['material'].replace('-', ' ')}, {line['environment']}, view {line['view']}")
+        self.assertEqual(first, f"{line['class_path']}, {line['material'].replace('-', ' ')}, {line['environment']}, view {line['view']}")
+        # Classes that end alike are told apart by what is above; of others the last name is enough.
+        captions = self.value("[...document.querySelectorAll('.cell .caption')].map(node => node.textContent.split('\\n')[0])")
+        paths = [other["class_path"] for other in self.sets["some"]]
+        self.assertEqual(captions, paths[:len(captions)])
+        self.assertGreater(len(captions), 4)
+        self.assertEqual(self.value("[...shortNames(['a/leaf', 'b/leaf', 'leaf', 'x/a/leaf', 'b/stem'])]"),
+                         [["a/leaf", "a/leaf"], ["b/leaf", "b/leaf"], ["leaf", "leaf"], ["x/a/leaf", "x/a/leaf"], ["b/stem", "stem"]])
         urls = {event["request"]["url"] for event in self.browser.seen("Network.requestWillBeSent")}
         self.assertTrue(all(url.startswith(("file:", "data:")) for url in urls), urls)
         self.assert_quiet()
@@ -287,6 +295,8 @@ class GalleryPage(unittest.TestCase):
             self.wait(f"picture.line && picture.image === {k} && [...document.querySelectorAll('.layers img')].every(i => i.complete && i.naturalWidth > 0)")
             self.assertEqual(self.value("document.getElementById('picture-title').textContent"), line["id"])
             self.assertIn(line["material"], self.value("document.getElementById('facts').textContent"))
+            explain = self.value("document.getElementById('facts').innerText").split("dsbuild explain ")[1].split("\nin the dataset's")[0]
+            self.assertEqual(shlex.split(explain), [".", *(["--"] if line["id"].startswith("-") else []), line["id"]])
         self.press("Escape")
         for line in lines:
             self.value(f"(clearFilters(), toggleValue('model', data.columns.get('model').values.indexOf({line['model']!r})), changed())")

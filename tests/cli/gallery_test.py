@@ -216,6 +216,15 @@ class GalleryTest(TinyCase):
         self.build("--rehash")
         told = self.gallery()
         self.assertEqual((told["broken"], told["made"]), (0, 2))
+        # A mask has no preview: the page shows the dataset's file, and nothing of the gallery changes but what it says.
+        self.file_of(records[2], "mask").unlink()
+        told = self.gallery()
+        self.assertEqual((told["broken"], told["made"]), (1, 0))
+        self.assertIn(records[2]["id"], " ".join(told["notes"]))
+        self.assertEqual(self.meta()["broken"], [2])
+        self.assertEqual(self.gallery()["broken"], 1)
+        self.build("--rehash")
+        self.assertEqual(self.gallery()["broken"], 0)
 
     def test_hostile_names(self):
         names = ["a b", "<img src=x onerror=alert(1)>", "quote\"and'", "Gr\u00fc\u00dfe \u65e5\u672c", "per%20cent#hash?q", "__proto__"]

@@ -118,10 +118,27 @@ function numberText(column, value) {
   return column.unit ? `${shortNumber(value)} ${column.unit}` : shortNumber(value);
 }
 
+// Of each path its last names, as many as tell it from the others that end alike.
+function shortNames(paths) {
+  const endings = path => path.split('/').map((_, k, parts) => parts.slice(parts.length - 1 - k).join('/'));
+  const counts = new Map();
+  for (const path of paths) for (const ending of endings(path)) counts.set(ending, (counts.get(ending) || 0) + 1);
+  return new Map(paths.map(path => [path, endings(path).find(ending => counts.get(ending) === 1) || path]));
+}
+
+// "mug" of the image's class, or else of its model.
+const shorts = new Map();
+function shortNameOf(i) {
+  const key = ['class', 'model'].find(one => valueOf(i, one));
+  if (!key) return data.ids[i].slice(data.ids[i].lastIndexOf('/') + 1);
+  const column = data.columns.get(key);
+  if (!shorts.has(key)) shorts.set(key, shortNames([...new Set(column.type === 'list' ? column.values : column.of)]));
+  return shorts.get(key).get(valueOf(i, key));
+}
+
 // "mug, red plastic, studio, view 3".
 function nameOf(i) {
-  const last = text => text.slice(text.lastIndexOf('/') + 1);
-  const parts = [last(valueOf(i, 'class') || valueOf(i, 'model')), valueOf(i, 'material').replaceAll('-', ' '), valueOf(i, 'environment')];
+  const parts = [valueOf(i, 'class') || valueOf(i, 'model') ? shortNameOf(i) : '', valueOf(i, 'material').replaceAll('-', ' '), valueOf(i, 'environment')];
   const view = valueOf(i, 'view');
   if (view !== '') parts.push(`view ${view}`);
   return parts.filter(part => part !== '').join(', ') || data.ids[i];

@@ -82,9 +82,8 @@ function makeCell() {
 
 function captionOf(i) {
   const column = data.columns.get(state.caption);
-  const first = valueOf(i, 'class') || valueOf(i, 'model') || data.ids[i];
   const value = !column ? data.ids[i] : column.type === 'list' ? valueOf(i, column.key) : numberText(column, column.of[i]);
-  return [first.slice(first.lastIndexOf('/') + 1), value];
+  return [shortNameOf(i), value];
 }
 
 // Masks and boxes lie over the picture as it lies in its square: as large as fits, in the middle.

@@ -162,7 +162,7 @@ function factRows(line) {
   rows.push(['sources', ofAssets(data.meta.sources).map(source => source.url || source.text.trim().split('\n')[0]).join('\n'), []]);
   rows.push(['render key', line.render_key, [copy(line.render_key)]]);
   for (const file of line.files) rows.push([file.kind, `${file.path}\n${file.xxh128}`, [copy(file.path)]]);
-  const explain = `dsbuild explain . ${shellWord(line.id)}`;
+  const explain = `dsbuild explain . ${line.id.startsWith('-') ? '-- ' : ''}${shellWord(line.id)}`;
   rows.push(['why it was made', `${explain}\nin the dataset's folder`, [copy(explain)]]);
   return rows.filter(([, text]) => text !== '' && text !== undefined && text !== null);
 }
