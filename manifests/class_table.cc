@@ -100,14 +100,27 @@ Columns find_columns(const Row& header, const SourcePlace& place, Diagnostics& d
     if (column) diagnostics.add(place, "has two columns {}", header[c]);
     column = c;
   }
-  for (const std::size_t wanted : {k_name, k_class})
-    if (!columns[wanted])
-      diagnostics.add(place, "must name the columns name and class, and may split, found \"{}\"",
-                      fmt::join(header, ","));
+  if (!columns[k_name] || !columns[k_class])
+    diagnostics.add(place, "must name the columns name and class, and may split, found \"{}\"",
+                    fmt::join(header, ","));
   return columns;
 }
 
 }  // namespace
+
+std::string trimmed_class(std::string_view path) {
+  constexpr std::string_view k_blank = " \t";
+  std::string trimmed;
+  for (;;) {
+    std::string_view part = path.substr(0, path.find('/'));
+    const bool is_last = part.size() == path.size();
+    if (!is_last) path.remove_prefix(part.size() + 1);
+    part.remove_prefix(std::min(part.find_first_not_of(k_blank), part.size()));
+    trimmed += part.substr(0, part.find_last_not_of(k_blank) + 1);
+    if (is_last) return trimmed;
+    trimmed += '/';
+  }
+}
 
 std::vector<LabelledModel> parse_class_table(std::string_view text, const std::string& name) {
   Diagnostics diagnostics(ErrorKind::asset);
@@ -129,11 +142,14 @@ std::vector<LabelledModel> parse_class_table(std::string_view text, const std::s
                       row->size());
       continue;
     }
-    LabelledModel model{(*row)[*columns[k_name]], {(*row)[*columns[k_class]], ""}, place};
+    LabelledModel model{
+        (*row)[*columns[k_name]], {trimmed_class((*row)[*columns[k_class]]), ""}, place};
     if (columns[k_split]) model.label.split = (*row)[*columns[k_split]];
     if (model.model.empty()) diagnostics.add(place, "the name is empty");
     if (!is_class_path(model.label.class_path))
-      diagnostics.add(place, "a class must be names with / between, none of 0 . .., got \"{}\"",
+      diagnostics.add(place,
+                      "a class must be names with / between, none of 0 . .., without control "
+                      "characters, got {:?}",
                       model.label.class_path);
     if (const std::string called = model.label.split; !called.empty()) {
       model.label.split = split_named(called);

@@ -20,7 +20,12 @@ namespace ds {
 ///
 /// Further columns are not read, nor are empty lines. Throws Error(asset), all findings with file:line: a
 /// column missing or there twice, a row of another length, a name that is empty or stands twice, a class
-/// with an empty part or one of 0 . .., another split, a quote that is not closed.
+/// with an empty part, one of 0 . .. or with a control character, another split, a quote that is not closed.
+/// Blanks around a class's parts are none of it.
 std::vector<LabelledModel> parse_class_table(std::string_view text, const std::string& name);
+
+/// A class path without the blanks (spaces and tabs) around its parts, which lists of classes a line do not
+/// hold and nobody sees.
+std::string trimmed_class(std::string_view path);
 
 }  // namespace ds

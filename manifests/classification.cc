@@ -153,8 +153,11 @@ class Parser {
 
   /// Names become parts of a path ("vehicle/car") and of folders in exported datasets.
   void check_name(const std::string& name) {
-    if (name == "0" || name == "." || name == ".." || name.find('/') != name.npos) {
-      diagnostics_.add(here(), "a class name must hold no / and be none of 0 . .., got {}", name);
+    if (!is_class_path(name) || name.find('/') != name.npos) {
+      diagnostics_.add(here(),
+                       "a class name must hold no / and no control character and be none of 0 . "
+                       ".., got {:?}",
+                       name);
     }
   }
 
@@ -221,6 +224,11 @@ class Parser {
   std::map<std::string, std::pair<std::string, int>> seen_;  // model -> class and line
 };
 
+bool has_control(std::string_view text) {
+  return std::any_of(text.begin(), text.end(),
+                     [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; });
+}
+
 bool all_digits(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == text.npos;
 }
@@ -272,7 +280,8 @@ bool is_class_path(std::string_view path) {
   if (path.empty()) return true;
   for (;;) {
     const std::string_view part = path.substr(0, path.find('/'));
-    if (part.empty() || part == "0" || part == "." || part == "..") return false;
+    if (part.empty() || part == "0" || part == "." || part == ".." || has_control(part))
+      return false;
     if (part.size() == path.size()) return true;
     path.remove_prefix(part.size() + 1);
   }

@@ -53,7 +53,7 @@ std::string_view split_named(std::string_view name);
 /// "train, training, val, ... or evaluation": all that split_named knows.
 std::string split_names_text();
 
-/// Whether it is names with / between, none of them empty, 0, . or ..; "" is, too: no class.
+/// Whether it is names with / between, none empty, 0, . or .. or with control characters; "" is, too: no class.
 bool is_class_path(std::string_view path);
 
 struct ModelLabel {

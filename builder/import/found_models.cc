@@ -15,6 +15,7 @@
 #include <mutex>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 namespace ds {
 namespace {
@@ -26,6 +27,17 @@ std::string list_text(const std::vector<fs::path>& files) {
   for (const fs::path& file : files)
     list += (list.empty() ? "" : ", ") + to_toml(fs::absolute(file).string());
   return "[" + list + "]";
+}
+
+/// Nobody gave the settings that a folder is read by: what is wrong with one is the folder's, or the file's.
+std::string in_imports_words(std::string text, const fs::path& from) {
+  for (const auto& [setting, words] :
+       {std::pair<std::string, std::string>("--set models.dir", from.string()),
+        std::pair<std::string, std::string>("--set ", "")})
+    for (std::size_t at = text.find(setting); at != text.npos;
+         at = text.find(setting, at + words.size()))
+      text.replace(at, setting.size(), words);
+  return text;
 }
 
 /// The folder as recipes read it, with the names that tell all models apart.
@@ -56,7 +68,11 @@ Recipe read_folder(const ImportRequest& request, const std::vector<ClassSource>&
   const TemporaryFolder folder;
   write_file_atomic(folder.path() / "import.toml",
                     "models.recursive = true\nmodels.names = \"path\"\n");
-  return read_recipe(folder.path() / "import.toml", settings);
+  try {
+    return read_recipe(folder.path() / "import.toml", settings);
+  } catch (const Error& error) {
+    fail(error.kind(), "{}", in_imports_words(error.what(), request.from));
+  }
 }
 
 /// What reading a model's file told.

@@ -161,16 +161,18 @@ void read_class_ids(const Settings& settings, Recipe& recipe) {
     if (!check_utf8(text, file->string(), diagnostics)) return;
     std::string_view rest = without_bom(text);
     for (int line = 1; !rest.empty(); ++line) {
-      const std::string_view path = trimmed(take_line(rest));
+      const std::string path = trimmed_class(trimmed(take_line(rest)));
       if (path.empty()) continue;
       const SourcePlace place{file->string(), line, 0};
-      const auto [first, is_new] = lines.try_emplace(std::string(path), line);
+      const auto [first, is_new] = lines.try_emplace(path, line);
       if (!is_new)
         diagnostics.add(place, "class {} stands in line {} already", path, first->second);
       if (!is_class_path(path))
-        diagnostics.add(place, "a class must be names with / between, none of 0 . .., got \"{}\"",
+        diagnostics.add(place,
+                        "a class must be names with / between, none of 0 . .., without control "
+                        "characters, got {:?}",
                         path);
-      recipe.class_ids.emplace_back(path);
+      recipe.class_ids.push_back(path);
     }
   } catch (const Error& error) {
     add_findings(error, diagnostics);

@@ -3,6 +3,7 @@
 
 #include "builder/recipe/class_files.h"
 #include "builder/recipe/split_folders.h"
+#include "manifests/class_table.h"
 #include "manifests/concerns.h"
 #include "tracer/base/file_names.h"
 #include "tracer/scene/mesh_formats.h"
@@ -149,11 +150,19 @@ struct ClassSource {
   std::vector<LabelledModel> (*read)(const fs::path& file, const Recipe& recipe, bool tell_splits);
 };
 
-/// The names of the first `most` folders below models.dir, but for one that tells the model's split.
+bool has_control(std::string_view text) {
+  return std::any_of(text.begin(), text.end(),
+                     [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; });
+}
+
+/// The names of the first `most` folders below models.dir, without blanks around them, but for one that tells
+/// the model's split. Throws Error(asset) for names of several lines and the like.
 std::vector<LabelledModel> labels_of_folders(const Recipe& recipe, bool tell_splits,
                                              std::size_t most) {
   const SplitFolders splits(recipe.models);
   std::vector<LabelledModel> models;
+  Diagnostics diagnostics(ErrorKind::asset);
+  std::set<std::string> refused;
   for (const ModelFile& model : recipe.models) {
     LabelledModel labelled{model.name, {}, {}};
     auto& [path, split] = labelled.label;
@@ -166,11 +175,15 @@ std::vector<LabelledModel> labels_of_folders(const Recipe& recipe, bool tell_spl
       if (!told.empty())
         split = told;
       else if (levels++ < most)
-        path += (path.empty() ? "" : "/") + name;
+        path += (path.empty() ? "" : "/") + trimmed_class(name);
       parent += "/" + name;
     }
+    if (has_control(path) && refused.insert(path).second)
+      diagnostics.add({}, "a folder whose name is a class must have no control character, got {:?}",
+                      path);
     if (levels > 0 || !split.empty()) models.push_back(std::move(labelled));
   }
+  diagnostics.throw_if_any();
   return models;
 }
 

@@ -62,6 +62,31 @@ class ImportTest(TinyCase):
         self.assertEqual({(m, c, i) for m, c, _, i in self.built()},
                          {("b.off", "car", 0), ("a.off", "car/suv", 1), ("c.ply", "chair", 2), ("loose.off", "", None)})
 
+    def test_a_blank_at_a_folders_end_is_none_of_its_class(self):
+        self.put({"chair /a.off": self.box, "chair /b.off": self.box, "table/c.ply": self.tetra, " big  cup/d.ply": self.tetra})
+        self.assertEqual(self.take_in(self.models)["classes"], ["big  cup", "chair", "table"])
+        self.assertEqual((self.to / "ids.txt").read_text(), "big  cup\nchair\ntable\n")
+        self.assertEqual({(m, c, i) for m, c, _, i in self.built()},
+                         {("d.ply", "big  cup", 0), ("a.off", "chair", 1), ("b.off", "chair", 1), ("c.ply", "table", 2)})
+        ids = self.run_it("classes", self.to / "recipe.toml", "--ids")
+        self.assertEqual((ids.code, ids.out), (0, "big  cup\nchair\ntable\n"))
+
+    def test_what_is_wrong_is_said_of_the_folder(self):
+        self.models.mkdir()
+        run = self.run_it("import", self.models, "-o", self.to)
+        self.assertEqual(run.code, 2, run)
+        self.assertIn(f"{self.models}: must hold a .ply", run.err)
+        self.assertNotIn("--set", run.err)
+
+    def test_a_folder_of_two_lines_is_no_class(self):
+        self.put({"two\nlines/a.off": self.box, "box/b.off": self.box})
+        recipe = self.tiny / "recipe.toml"
+        recipe.write_text(recipe.read_text().replace('[models]\ndir = "models"', f'[models]\ndir = "{self.models}"\nrecursive = true\nup = "y"\n\n'
+                                                     '[classes]\nfrom = "folder"'))
+        run = self.run_it("classes", recipe)
+        self.assertEqual(run.code, 2, run)
+        self.assertIn('a folder whose name is a class must have no control character, got "two\\nlines"', run.err)
+
     def test_materials_of_their_own_are_proposed_and_copied(self):
         square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
         faces = "usemtl paint\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n"

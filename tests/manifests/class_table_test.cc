@@ -61,11 +61,24 @@ TEST(ClassTable, SaysAllThatIsWrongWithItsLine) {
         "c.csv:8: model b stands twice, first in line 3", "c.csv:8: a class must be names",
         "c.csv:9: a class must be names", "c.csv:10: a class must be names"})
     EXPECT_THAT(found, HasSubstr(wanted));
+  // What models are refused for, which no list of a class a line can hold.
+  for (const char* wanted :
+       {"c.csv:2: a class must be names with / between, none of 0 . .., without "
+        "control characters, got \"a\\nb\"",
+        "c.csv:4: a class must be", "c.csv:5: a class must be"})
+    EXPECT_THAT(findings("name,class\na,\"a\nb\"\nb,x/y\x01\nc,x\ty\n"), HasSubstr(wanted));
   EXPECT_EQ(findings(""), "c.csv: must name the columns name and class, found an empty file");
-  EXPECT_THAT(findings("name;class\na;b\n"), HasSubstr("c.csv:1: must name the columns"));
+  EXPECT_EQ(findings("name;class\na;b\n"),
+            "c.csv:1: must name the columns name and class, and may split, found \"name;class\"");
   EXPECT_THAT(findings("name,class,name\n"), HasSubstr("c.csv:1: has two columns name"));
   EXPECT_THAT(findings("name,class\n\"a,b\n"), HasSubstr("c.csv:2: a quote is not closed"));
   EXPECT_THAT(findings("\xff\xfen"), HasSubstr("UTF-16"));
+}
+
+TEST(ClassTable, BlanksAroundNamesAreNoneOfAClass) {
+  EXPECT_THAT(rows("name,class\na,chair \nb, a / b c\t/d\nc, \n"),
+              ElementsAre("a|chair|", "b|a/b c/d|", "c||"));
+  EXPECT_THAT(findings("name,class\na,a/ /b\n"), HasSubstr("c.csv:2: a class must be"));
 }
 
 TEST(Labels, OfAListKnowTheirClassesAndSplits) {

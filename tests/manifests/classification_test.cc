@@ -138,7 +138,8 @@ TEST(Classification, ReportsEverythingTogether) {
             "a.cla:3: model 7 stands before the first class\n"
             "a.cla:4: class a: the number of models must be a count, got x\n"
             "a.cla:5: class a stands twice\n"
-            "a.cla:6: a class name must hold no / and be none of 0 . .., got b/c\n"
+            "a.cla:6: a class name must hold no / and no control character and be none of 0 . .., "
+            "got \"b/c\"\n"
             "a.cla:8: must be a class (name parent count) or a model (one word, or a file name "
             "with its ending), got "
             "2 words: two words");

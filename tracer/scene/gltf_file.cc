@@ -76,13 +76,26 @@ void refuse_deep(std::string_view json, const std::string& name) {
   }
 }
 
+/// "parse error at line 1, column 20: ...", without the library's number before it; of the file's own bytes
+/// in it only what can be printed.
+std::string told_by(const nlohmann::json::exception& error) {
+  constexpr std::size_t k_most = 200;  // a damaged file may hold one endless word
+  std::string text = error.what();
+  if (const std::size_t at = text.find("] "); text.starts_with('[') && at != text.npos)
+    text.erase(0, at + 2);
+  if (text.size() > k_most) text.resize(k_most);
+  for (char& c : text)
+    if (c < ' ' || c > '~') c = '?';
+  return text;
+}
+
 nlohmann::json parsed(std::string_view json, const std::string& name) {
   refuse_deep(json, name);
   nlohmann::json root;
   try {
     root = nlohmann::json::parse(json);
   } catch (const nlohmann::json::exception& error) {
-    fail(ErrorKind::asset, "{}: {}", name, printable(error.what()));
+    fail(ErrorKind::asset, "{}: its JSON cannot be read: {}", name, told_by(error));
   }
   if (!root.is_object()) fail(ErrorKind::asset, "{}: wanted a JSON object", name);
   return root;
@@ -125,6 +138,11 @@ std::string percent_decoded(std::string_view uri) {
 
 /// Where a uri leads, relative to the file that names it: never out of that file's folder.
 fs::path checked(const std::string& uri, const std::string& name) {
+  if (uri.starts_with("data:"))
+    fail(ErrorKind::asset,
+         "{}: wanted a data URI of base64 and of image/png, image/jpeg, image/bmp, image/gif or "
+         "application/octet-stream, found {}",
+         name, printable(std::string_view(uri).substr(5, uri.find(',') - 5)));
   const std::string decoded = percent_decoded(uri);
   fs::path path(decoded);
   const bool leaves =

@@ -2,6 +2,7 @@
 #include "tracer/scene/own_materials.h"
 
 #include "tests/tracer/scene/sdl_files_for_tests.h"
+#include "tracer/base/error.h"
 #include "tracer/base/hash_stream.h"
 #include "tracer/scene/scene_reads.h"
 #include "tracer/scene/type_tables.h"
@@ -138,6 +139,17 @@ TEST(OwnMaterials, GltfTexturesKeepTheirChannelsAndPlaces) {
   // Bytes 12 to 15 of the buffer are the float 1.
   EXPECT_EQ(embedded_image(folder.path() / "m.gltf", 1), std::string("\0\0\x80\x3f", 4));
   EXPECT_EQ(own.images[1].content, hash_text(std::string("\0\0\x80\x3f", 4)));
+}
+
+TEST(OwnMaterials, ADataUriOfAnotherTypeIsSaidToBeOne) {
+  const SdlFolder folder;
+  try {
+    own_gltf(folder, R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0}})",
+             R"(,"textures":[{"source":0}],"images":[{"uri":"data:image/webp;base64,aGVsbG8="}])");
+    ADD_FAILURE() << "read without an error";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("application/octet-stream, found image/webp;base64"));
+  }
 }
 
 TEST(OwnMaterials, AnImageOfADataUriIsItsBytes) {
