@@ -27,15 +27,6 @@ bool is_of_colours(const RecipeValue& value) {
   return false;
 }
 
-/// The range that every type's property of this name keeps; shares of light are 0 to 1.
-NumberRange range_of(std::string_view property) {
-  const InputLimit limit = limit_of(property);
-  NumberRange range = limit.range;
-  range.least = std::max(range.least, limit.physical.least);
-  range.most = std::min(range.most, limit.physical.most);
-  return range;
-}
-
 /// Whether it is of a word that gives points and no colours.
 bool is_of_points(const RecipeValue& value) {
   const RecipeValue::Table* table = value.table();
@@ -91,7 +82,7 @@ void read_patterns(const Settings& settings, std::string_view key, std::vector<D
     const DrawnKind kind =
         of_environment || !is_of_points(value) ? kind_of_vary(value) : DrawnKind::number;
     auto distribution = read_distribution(
-        drawn, kind, of_environment ? NumberRange{} : range_of(vary.property), complain);
+        drawn, kind, of_environment ? NumberRange{} : kept_range(vary.property), complain);
     if (!distribution) continue;
     all.push_back({fmt::format("{}.{}", key, vary.pattern), to_toml(with_numbers(drawn)),
                    *std::move(distribution), nullptr});

@@ -223,7 +223,7 @@ int add_matte(Scene& scene, Vec3 kd) {
 
 float seen_value(const NodeType& type, std::size_t input) {
   const InputType& row = type.inputs[input];
-  const NumberRange range = limit_of(row.name).range;
+  const NumberRange range = row.told.range;
   const bool unseen = row.default_value == 0 && range.least == 0 && range.most == 1 &&
                       row.name != "anisotropic";  // whose axes a test would have to know
   return unseen ? 0.2f + 0.1f * static_cast<float>(input % 7) : row.default_value;

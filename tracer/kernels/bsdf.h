@@ -6,6 +6,8 @@
 //   DS_NAME_INPUTS(INPUT)    its inputs: INPUT(slot, width, default), slot being NAME_input
 //   DS_NAME_NUMBERS(NUMBER)  its fixed numbers: NUMBER(slot, default)
 //   DS_TRAITS(NAME, sum)     of traits.h
+//   NodeOnHost NAME_on_host  of traits.h, in a DS_HOOK_HOST part: what each input and number is, in which
+//                            range, and what the material promises; tests hold it over all of the range
 //   NAME_children            how many materials it chooses among; one with any has NAME_child alone
 //   NAME_derived             how many numbers it derives from the inputs and the viewer, once for
 //                            all questions; k_most_derived at most

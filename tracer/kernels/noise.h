@@ -63,6 +63,11 @@ DS_FN real gradient_noise(real3 p) {
   return between * 0.81649658f;  // sqrt(2/3): the gradients are sqrt(3) long, Perlin's sqrt(2)
 }
 
+#ifdef DS_HOOK_HOST
+/// No gradient noise is greater: that in a cell's middle with all gradients towards it.
+inline constexpr double k_noise_size = 1.2248;
+#endif
+
 /// Fractal sum: octave o has frequency 1.99^o and weight roughness^o (Musgrave; the lacunarity
 /// keeps lattices apart).
 DS_FN real fractal_noise(real3 p, real roughness, int octaves) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What every texture answers. A texture NAME in textures/NAME.h has DS_NAME_INPUTS and
 // DS_NAME_NUMBERS as materials have (slots of inputs count textures, slots of numbers count floats),
-// DS_TRAITS(NAME, a sum of traits.h), and
+// DS_TRAITS(NAME, a sum of traits.h), NodeOnHost NAME_on_host in a DS_HOOK_HOST part, and
 //
 //   real3 NAME_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const real3* inputs)
 //

@@ -3,6 +3,8 @@
 // these, or 0. No program holds this file: a new trait makes nothing stale.
 #pragma once
 
+#include "tracer/kernels/value_bounds.h"
+
 enum {
   // A material ...
   k_trait_lobes = 1,              ///< picks one of several lobes: its paths draw a number for it
@@ -19,6 +21,40 @@ enum {
   k_trait_sampled =
       128,              ///< is chosen by next-event estimation; others, scattered rays find as well
   k_trait_small = 256,  ///< shines from few directions: what is gathered of it is small and bright
+};
+
+/// What a number of a material or texture is.
+enum class ParameterKind {
+  number,
+  share,  ///< of light: with all of them in [0, 1] no more is sent on than comes; what is read beyond
+          ///< that is warned of
+  whole,
+  flag,  ///< 0 or 1
+};
+
+/// Of an input or number of a material or texture, in the DS_HOOK_HOST part of its header: a row for
+/// each input, then for each number, in their order. Tests draw all of them from their ranges.
+struct Parameter {
+  std::string_view name;
+  std::string_view help;  ///< with its unit
+  NumberRange range{};    ///< of constants; what a texture gives may be anything
+  ParameterKind kind = ParameterKind::number;
+};
+inline constexpr NumberRange k_not_negative{.least = 0};
+inline constexpr NumberRange k_zero_to_one{.least = 0, .most = 1};
+
+/// NAME_on_host of a material or texture, in its DS_HOOK_HOST part.
+struct NodeOnHost {
+  std::span<const Parameter> parameters;
+  /// Of a material, with all its shares at 1, whatever the rest: at most so much of what comes is lost.
+  double most_lost = 1;
+  /// How far NAME_albedo may be from the integral of the BSDF where `albedo_holds` (null: everywhere)
+  /// says that it is meant to be right; elsewhere it is in [0, 1] only.
+  double albedo_error = 1e-3;
+  bool (*albedo_holds)(const float* inputs, bool outside) = nullptr;
+  /// Of a texture's values, of what is known of its inputs'; null: nothing is known.
+  std::optional<ValueBounds> (*bounds)(std::span<const std::optional<ValueBounds>> inputs,
+                                       const float* numbers) = nullptr;
 };
 
 /// What of a light the host makes by a function in a file of its own.

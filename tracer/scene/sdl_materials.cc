@@ -61,8 +61,9 @@ std::vector<SdlParameter> old_name_parameters(const NodeType& type) {
   std::vector<SdlParameter> parameters;
   for (const auto& [name, old_name] : k_old_names)
     if (find_input(type, name) >= 0)
-      parameters.push_back({std::string(old_name), SdlType::scalar_input, "",
-                            fmt::format("old name of {}", name), limit_of(name).range});
+      parameters.push_back(
+          {std::string(old_name), SdlType::scalar_input, "", fmt::format("old name of {}", name),
+           type.inputs[static_cast<std::size_t>(find_input(type, name))].told.range});
   return parameters;
 }
 

@@ -161,23 +161,23 @@ std::string sdl_reference() {
   return text;
 }
 
-std::string physical_text(const InputLimit& limit) {
-  const std::string range = limit.physical.text();
-  return range.empty() ? "" : fmt::format("a share of light, {}; what is not is warned of", range);
+std::string told_text(const Parameter& told) {
+  if (told.kind != ParameterKind::share) return std::string(told.help);
+  return fmt::format("{}{}a share of light, {}; what is not is warned of", told.help,
+                     told.help.empty() ? "" : "; ", physical_range(told).text());
 }
 
 std::vector<SdlParameter> header_parameters(const NodeType& type) {
   std::vector<SdlParameter> parameters;
   for (const InputType& input : type.inputs)
-    parameters.push_back({std::string(input.name),
-                          input.width == 1 ? SdlType::scalar_input : SdlType::color_input,
-                          fmt::format("{}", input.default_value),
-                          physical_text(limit_of(input.name)), limit_of(input.name).range});
+    parameters.push_back(
+        {std::string(input.name), input.width == 1 ? SdlType::scalar_input : SdlType::color_input,
+         fmt::format("{}", input.default_value), told_text(input.told), input.told.range});
   for (const NumberType& number : type.numbers) {
-    const InputLimit limit = limit_of_number(number.name);
-    parameters.push_back({std::string(number.name), limit.flag ? SdlType::flag : SdlType::number,
-                          fmt::format("{}", number.default_value), "",
-                          limit.flag ? NumberRange{} : limit.range});
+    const bool flag = number.told.kind == ParameterKind::flag;
+    parameters.push_back({std::string(number.name), flag ? SdlType::flag : SdlType::number,
+                          fmt::format("{}", number.default_value), told_text(number.told),
+                          number.told.range});
   }
   return parameters;
 }

@@ -82,8 +82,8 @@ std::string wanted_text(const SdlParameter& parameter);
 /// assets/SDL.md: every section, type and property as Markdown.
 std::string sdl_reference();
 
-/// What a reference says of an input's physical range; "" where it has none.
-std::string physical_text(const InputLimit& limit);
+/// What a reference says of an input or number: its help, and of a share of light what is physical.
+std::string told_text(const Parameter& told);
 /// The properties of a type of material or texture that stand in its kernel header.
 std::vector<SdlParameter> header_parameters(const NodeType& type);
 /// The lists, one behind the other.

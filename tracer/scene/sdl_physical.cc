@@ -18,27 +18,27 @@ std::string subject_of(const SdlNode& node, std::string_view property) {
 
 }  // namespace
 
-std::optional<std::string> find_unphysical(const SdlNode& node, std::string_view property,
+std::optional<std::string> find_unphysical(const SdlNode& node, const Parameter& input,
                                            const TextureRef& value) {
   const auto bounds = input_bounds(node.reader().scene, value, not_read);
   if (!bounds) return std::nullopt;
-  return say_unphysical(subject_of(node, property), property, *bounds, value.texture >= 0);
+  return say_unphysical(subject_of(node, input.name), input, *bounds, value.texture >= 0);
 }
 
 void find_unphysical(const SdlNode& node, const NodeType& type, Material& material) {
   const Scene& scene = node.reader().scene;
   for (std::size_t i = 0; i < type.inputs.size(); ++i) {
-    const std::string_view property = type.inputs[i].name;
+    const Parameter& input = type.inputs[i].told;
     const TextureRef& value = material.inputs[i];
-    if (auto line = find_unphysical(node, property, value)) {
+    if (auto line = find_unphysical(node, input, value)) {
       material.unphysical.push_back(std::move(*line));
       continue;
     }
     if (input_bounds(scene, value, not_read)) continue;
     const auto bounds = input_bounds(scene, value, bounds_before_reading);
-    std::string subject = subject_of(node, property);
-    if (bounds && say_unphysical(subject, property, *bounds, true))
-      material.of_pixels.push_back({std::move(subject), std::string(property), value});
+    std::string subject = subject_of(node, input.name);
+    if (bounds && say_unphysical(subject, input, *bounds, true))
+      material.of_pixels.push_back({std::move(subject), std::string(input.name), value});
   }
 }
 

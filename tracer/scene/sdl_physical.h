@@ -8,8 +8,8 @@
 namespace ds {
 
 /// "m.mat:3: scene.materials.body.kd: wanted numbers in [0, 1], found 255 0 0: ...", where the
-/// property's value is none that its table calls physical, whatever its images hold; nothing else.
-std::optional<std::string> find_unphysical(const SdlNode& node, std::string_view property,
+/// value of the property `input` is none that it calls physical, whatever its images hold; nothing else.
+std::optional<std::string> find_unphysical(const SdlNode& node, const Parameter& input,
                                            const TextureRef& value);
 /// Of all inputs of a material, which have been read and are of that type: to its `unphysical`, or
 /// where images' pixels tell it to its `of_pixels`.

@@ -113,9 +113,11 @@ void read_imagemap(const SdlNode& node) {
   read_plain(node, std::move(texture));
 }
 
+constexpr Parameter k_kr{"kr", "a constant", {.least = 0}, ParameterKind::share};
+
 void read_fresnel_color(const SdlNode& node) {
   const Vec3 kr = constant_color(node, "kr", 0.5f);
-  if (auto line = find_unphysical(node, "kr", {kr, -1}))
+  if (auto line = find_unphysical(node, k_kr, {kr, -1}))
     node.reader().unphysical_conductors[node.name()] = std::move(*line);
   node.reader().conductors[node.name()] = fresnel_color(kr);
 }
@@ -188,8 +190,7 @@ const std::vector<TextureReader>& readers() {
       {{"fresnelcolor",
         "A metal of about that colour, for metal2's fresnel: LuxCore's n and k of it, with which "
         "0.5 reflects 0.54 at normal incidence.",
-        {{"kr", SdlType::color_input, "0.5", "a constant; " + physical_text(limit_of("kr")),
-          k_not_negative}}},
+        {{std::string(k_kr.name), SdlType::color_input, "0.5", told_text(k_kr), k_kr.range}}},
        read_fresnel_color},
       {{"fresnelconst",
         "A metal's refractive index as numbers, for metal2's fresnel.",

@@ -8,72 +8,29 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <limits>
 #include <utility>
+#include <vector>
 
 namespace ds {
 namespace {
 
 using Bounds = std::optional<InputBounds>;
+using DS_KERNELS::each_channel;
+using DS_KERNELS::greater_of;
+using DS_KERNELS::lesser_of;
 
-bool is_constant(const InputBounds& bounds) {
-  return bounds.low == bounds.high;
-}
-
-template <typename Function>
-Vec3 each(Vec3 a, Vec3 b, Function function) {
-  return {function(a.x, b.x), function(a.y, b.y), function(a.z, b.z)};
-}
-
-float lesser_of(float a, float b) {
-  return std::min(a, b);
-}
-float greater_of(float a, float b) {
-  return std::max(a, b);
-}
-
-Bounds either(const Bounds& a, const Bounds& b) {
-  if (!a || !b) return std::nullopt;
-  return InputBounds{each(a->low, b->low, lesser_of), each(a->high, b->high, greater_of)};
-}
-
-/// An operation that is monotonic in either operand, of two operands of which one is a constant.
-template <typename Operation>
-Bounds combined(const Bounds& a, const Bounds& b, Operation operation) {
-  if (!a || !b || (!is_constant(*a) && !is_constant(*b))) return std::nullopt;
-  const Vec3 one = each(a->low, b->low, operation), other = each(a->high, b->high, operation);
-  const Vec3 third = each(a->low, b->high, operation), fourth = each(a->high, b->low, operation);
-  return either(either(InputBounds{one, one}, InputBounds{other, other}),
-                either(InputBounds{third, third}, InputBounds{fourth, fourth}));
-}
-
-/// From `from` to `to` by an amount that is held in [0, 1].
-Bounds mixed(const Bounds& amount, const Bounds& from, const Bounds& to) {
-  if (!amount || !is_constant(*amount)) return either(from, to);
-  const float share = std::clamp(amount->low.x, 0.0f, 1.0f);
-  return combined(from, to, [share](float a, float b) { return (1 - share) * a + share * b; });
-}
-
-Bounds texture_bounds(const Scene& scene, const Texture& texture, const BoundsOfImage& image) {
-  const NodeType& type = texture_types()[static_cast<std::size_t>(texture.type)];
-  const auto input = [&](std::string_view name) {
-    return input_bounds(scene, texture.inputs[static_cast<std::size_t>(find_input(type, name))],
-                        image);
-  };
-  if (type.name == "imagemap") {
-    if (texture.image < 0) return std::nullopt;  // its file is an error of its own
-    return image(scene.images[static_cast<std::size_t>(texture.image)]);
-  }
-  if (reads_colors(type)) return InputBounds{{0, 0, 0}, {1, 1, 1}};
-  if (has_trait(type, kernels::k_trait_chooses))
-    return either(input("texture1"), input("texture2"));
-  if (type.name == "mix") return mixed(input("amount"), input("texture1"), input("texture2"));
-  if (type.name == "add") return combined(input("texture1"), input("texture2"), std::plus());
-  if (type.name == "subtract") return combined(input("texture1"), input("texture2"), std::minus());
-  if (type.name == "scale")
-    return combined(input("texture1"), input("texture2"), std::multiplies());
-  return std::nullopt;
+/// Outer ones too.
+Bounds known_bounds(const Scene& scene, const TextureRef& ref, const BoundsOfImage& image) {
+  if (ref.texture < 0) return InputBounds{ref.constant, ref.constant};
+  const Texture& texture = scene.textures[static_cast<std::size_t>(ref.texture)];
+  const NodeOnHost& host = texture_types()[static_cast<std::size_t>(texture.type)].host;
+  if (texture.image >= 0) return image(scene.images[static_cast<std::size_t>(texture.image)]);
+  if (host.bounds == nullptr) return std::nullopt;  // an image whose file is an error of its own
+  std::vector<Bounds> inputs;
+  for (const TextureRef& input : texture.inputs)
+    inputs.push_back(known_bounds(scene, input, image));
+  return host.bounds(inputs, texture.numbers.data());
 }
 
 bool holds(const NumberRange& range, Vec3 value) {
@@ -96,8 +53,8 @@ std::string found_text(const InputBounds& bounds, const NumberRange& range, bool
 }  // namespace
 
 Bounds input_bounds(const Scene& scene, const TextureRef& ref, const BoundsOfImage& image) {
-  if (ref.texture < 0) return InputBounds{ref.constant, ref.constant};
-  return texture_bounds(scene, scene.textures[static_cast<std::size_t>(ref.texture)], image);
+  const Bounds bounds = known_bounds(scene, ref, image);
+  return bounds && bounds->reached ? bounds : std::nullopt;
 }
 
 Bounds bounds_before_reading(const Image& image) {
@@ -118,19 +75,19 @@ InputBounds bounds_of_pixels(const Image& image) {
   const std::size_t values = image.rgb.size();
   for (std::size_t i = 0; i + 2 < values; i += 3) {
     const Vec3 pixel{image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]};
-    bounds.low = i == 0 ? pixel : each(bounds.low, pixel, lesser_of);
-    bounds.high = i == 0 ? pixel : each(bounds.high, pixel, greater_of);
+    bounds.low = i == 0 ? pixel : each_channel(bounds.low, pixel, lesser_of);
+    bounds.high = i == 0 ? pixel : each_channel(bounds.high, pixel, greater_of);
   }
-  if (image.wrap == ImageWrap::black) bounds.low = each(bounds.low, Vec3{}, lesser_of);
-  if (image.wrap == ImageWrap::white) bounds.high = each(bounds.high, Vec3{1, 1, 1}, greater_of);
+  if (image.wrap == ImageWrap::black) bounds.low = each_channel(bounds.low, Vec3{}, lesser_of);
+  if (image.wrap == ImageWrap::white)
+    bounds.high = each_channel(bounds.high, Vec3{1, 1, 1}, greater_of);
   return bounds;
 }
 
-std::optional<std::string> say_unphysical(std::string_view subject, std::string_view property,
+std::optional<std::string> say_unphysical(std::string_view subject, const Parameter& input,
                                           const InputBounds& bounds, bool is_texture) {
-  const InputLimit limit = limit_of(property);
-  const bool is_share = !limit.physical.text().empty();
-  const NumberRange& range = is_share ? limit.physical : limit.range;
+  const bool is_share = input.kind == ParameterKind::share;
+  const NumberRange range = is_share ? physical_range(input) : input.range;
   if (holds(range, bounds.low) && holds(range, bounds.high)) return std::nullopt;
   const bool gains = is_share && !holds({.most = range.most}, bounds.high);
   return fmt::format("{}: wanted numbers {}, found {}{}", subject, range.text(),
@@ -140,19 +97,23 @@ std::optional<std::string> say_unphysical(std::string_view subject, std::string_
 
 std::vector<std::string> add_unphysical_of_pixels(Scene& scene, const BoundsOfImage& image) {
   std::vector<std::string> added;
-  for (Material& material : scene.materials)
+  for (Material& material : scene.materials) {
+    const NodeType& type = material_types()[static_cast<std::size_t>(material.type)];
     for (const InputOfPixels& input : material.of_pixels) {
+      const Parameter& told =
+          type.inputs[static_cast<std::size_t>(find_input(type, input.property))].told;
       const Bounds bounds = input_bounds(scene, input.value, image);
       // White that was converted between primaries, or divided by alpha, is 1 but for rounding.
       constexpr float k_rounded = 1 - 1e-4f;
-      if (!bounds || !say_unphysical(input.subject, input.property,
+      if (!bounds || !say_unphysical(input.subject, told,
                                      {bounds->low * k_rounded, bounds->high * k_rounded}, true))
         continue;
-      if (auto line = say_unphysical(input.subject, input.property, *bounds, true)) {
+      if (auto line = say_unphysical(input.subject, told, *bounds, true)) {
         material.unphysical.push_back(*line);
         added.push_back(std::move(*line));
       }
     }
+  }
   return added;
 }
 

@@ -20,34 +20,80 @@ constexpr std::string_view without_prefix(std::string_view slot, std::string_vie
 }
 
 // An empty list needs an array of some length; the last, unnamed row is not part of the span.
-#define DS_INPUT_ROW(slot, width, default_value) InputType{#slot, width, default_value},
-#define DS_NUMBER_ROW(slot, default_value) NumberType{#slot, default_value},
+#define DS_INPUT_ROW(slot, width, default_value) InputType{#slot, width, default_value, {}},
+#define DS_NUMBER_ROW(slot, default_value) NumberType{#slot, default_value, {}},
 #define DS_NODE_LISTS(sdl_name, prefix, PREFIX)                                  \
   static std::array prefix##_input_rows = {DS_##PREFIX##_INPUTS(DS_INPUT_ROW)    \
-                                               InputType{"", 0, 0.0f}};          \
+                                               InputType{"", 0, 0.0f, {}}};      \
   static std::array prefix##_number_rows = {DS_##PREFIX##_NUMBERS(DS_NUMBER_ROW) \
-                                                NumberType{"", 0.0f}};
+                                                NumberType{"", 0.0f, {}}};
 
+/// Inputs or numbers with what `told`, as many rows, says of them.
 template <typename Row, std::size_t Size>
-std::span<const Row> named_rows(std::array<Row, Size>& rows, std::string_view prefix) {
-  for (Row& row : std::span(rows).first(Size - 1))
-    row.name = without_prefix(row.name, prefix);
+std::span<const Row> told_rows(std::array<Row, Size>& rows, std::span<const Parameter> told,
+                               std::string_view prefix) {
+  for (std::size_t i = 0; i + 1 < Size; ++i) {
+    rows[i].name = without_prefix(rows[i].name, prefix);
+    rows[i].told = told[i];
+  }
   return std::span<const Row>(rows).first(Size - 1);
 }
 
-#define DS_NODE_ROW(sdl_name, prefix, PREFIX, children) \
-  NodeType{sdl_name,                                    \
-           #prefix,                                     \
-           unsigned{kernels::prefix##_traits},          \
-           children,                                    \
-           named_rows(prefix##_input_rows, #prefix),    \
-           named_rows(prefix##_number_rows, #prefix)},
+/// Whether a header's parameters are its inputs, then its numbers, of these names.
+template <std::size_t Size>
+constexpr bool tells_all(const std::array<std::string_view, Size>& slots, std::string_view prefix,
+                         std::span<const Parameter> told) {
+  if (told.size() + 1 != Size) return false;
+  for (std::size_t i = 0; i < told.size(); ++i)
+    if (without_prefix(slots[i], prefix) != told[i].name) return false;
+  return true;
+}
+
+#define DS_INPUT_NAME(slot, width, default_value) #slot,
+#define DS_NUMBER_NAME(slot, default_value) #slot,
+#define DS_TELLS_ALL(sdl_name, prefix, PREFIX)                                           \
+  static_assert(tells_all(std::to_array<std::string_view>({DS_##PREFIX##_INPUTS(         \
+                              DS_INPUT_NAME) DS_##PREFIX##_NUMBERS(DS_NUMBER_NAME) ""}), \
+                          #prefix, kernels::prefix##_on_host.parameters),                \
+                #prefix "_parameters of its header names all inputs, then all numbers, in order");
+
+#define DS_NODE_ROW(sdl_name, prefix, PREFIX, children)                                           \
+  NodeType{                                                                                       \
+      sdl_name,                                                                                   \
+      #prefix,                                                                                    \
+      unsigned{kernels::prefix##_traits},                                                         \
+      children,                                                                                   \
+      told_rows(prefix##_input_rows, kernels::prefix##_on_host.parameters, #prefix),              \
+      told_rows(prefix##_number_rows,                                                             \
+                kernels::prefix##_on_host.parameters.subspan(std::size(prefix##_input_rows) - 1), \
+                #prefix),                                                                         \
+      kernels::prefix##_on_host},
 #define DS_MATERIAL_ROW(sdl_name, prefix, PREFIX) \
   DS_NODE_ROW(sdl_name, prefix, PREFIX, kernels::prefix##_children)
 #define DS_TEXTURE_ROW(sdl_name, prefix, PREFIX) DS_NODE_ROW(sdl_name, prefix, PREFIX, 0)
 #define DS_CHILDREN_FIT(sdl_name, prefix, PREFIX) \
   static_assert(int{kernels::prefix##_children} <= int{kernels::k_most_children});
 DS_ALL_MATERIALS(DS_CHILDREN_FIT)
+DS_ALL_MATERIALS(DS_TELLS_ALL)
+DS_ALL_TEXTURES(DS_TELLS_ALL)
+
+// Cameras of one span have one key of the recipe, so they must agree on it.
+constexpr bool agrees(const DS_KERNELS::CameraOnHost& a, const DS_KERNELS::CameraOnHost& b) {
+  return a.span != b.span ||
+         (a.default_value == b.default_value && a.range.least == b.range.least &&
+          a.range.most == b.range.most && a.range.open_least == b.range.open_least &&
+          a.range.open_most == b.range.open_most);
+}
+constexpr bool cameras_agree() {
+#define DS_CAMERA_ON_HOST(name) kernels::name##_on_host,
+  constexpr std::array all = {DS_ALL_CAMERAS(DS_CAMERA_ON_HOST)};
+#undef DS_CAMERA_ON_HOST
+  for (const auto& a : all)
+    for (const auto& b : all)
+      if (!agrees(a, b)) return false;
+  return true;
+}
+static_assert(cameras_agree(), "cameras of one span differ in its default or range");
 
 #define DS_LIGHT_ROW(sdl_name, prefix) \
   LightType{sdl_name, #prefix, unsigned{kernels::prefix##_traits}, kernels::prefix##_on_host},
@@ -83,12 +129,6 @@ std::size_t values_before(const LightType& type, std::string_view input) {
   return count;
 }
 
-InputLimit limit_among(std::span<const InputLimit> limits, std::string_view name) {
-  const auto at = std::find_if(limits.begin(), limits.end(),
-                               [&](const InputLimit& limit) { return limit.name == name; });
-  return at == limits.end() ? InputLimit{name} : *at;
-}
-
 template <typename Row>
 int find_named(std::span<const Row> rows, std::string_view name) {
   const auto found =
@@ -98,47 +138,19 @@ int find_named(std::span<const Row> rows, std::string_view name) {
 
 }  // namespace
 
-InputLimit limit_of(std::string_view name) {
-  constexpr NumberRange k_not_negative{.least = 0};
-  constexpr NumberRange k_share{.least = 0, .most = 1};
-  static constexpr InputLimit k_limits[] = {
-      {"kd", k_not_negative, false, k_share},
-      {"ks", k_not_negative, false, k_share},
-      {"kr", k_not_negative, false, k_share},
-      {"kt", k_not_negative, false, k_share},
-      {"ka", k_not_negative},
-      {"d", k_not_negative},
-      {"index", k_not_negative},
-      {"n", k_not_negative},
-      {"k", k_not_negative},
-      {"interiorior", {.least = 0.01}},  // divided by each other
-      {"exteriorior", {.least = 0.01}},
-      {"uroughness", k_share},
-      {"vroughness", k_share},
-      {"amount", k_share},
-      {"basecolor", k_share, false, k_share},
-      {"subsurface", k_share},
-      {"roughness", k_share},
-      {"metallic", k_share},
-      {"specular", k_share},
-      {"speculartint", k_share},
-      {"clearcoat", k_share},
-      {"clearcoatgloss", k_share},
-      {"anisotropic", k_share},
-      {"sheen", k_share},
-      {"sheentint", k_share},
-      {"thickness", k_not_negative},
-  };
-  return limit_among(k_limits, name);
-}
-
-InputLimit limit_of_number(std::string_view name) {
-  static constexpr InputLimit k_limits[] = {
-      {"channel", {.least = -1, .most = 2}},
-      {"octaves", {.least = 0, .most = 32}},  // a sample pays for each
-      {"doublesided", {.least = 0, .most = 1}, true},
-  };
-  return limit_among(k_limits, name);
+NumberRange kept_range(std::string_view input) {
+  NumberRange kept;
+  for (const auto types : {material_types(), texture_types()})
+    for (const NodeType& type : types) {
+      const int at = find_input(type, input);
+      if (at < 0) continue;
+      const Parameter& told = type.inputs[static_cast<std::size_t>(at)].told;
+      for (const NumberRange& range : {told.range, physical_range(told)}) {
+        kept.least = std::max(kept.least, range.least);
+        kept.most = std::min(kept.most, range.most);
+      }
+    }
+  return kept;
 }
 
 std::string header_comment(std::string_view folder, std::string_view prefix) {

@@ -11,22 +11,26 @@
 
 namespace ds {
 
-/// What a constant input, and a fixed number, of this name is limited to, whatever type has it; by default any number is
-/// right.
-struct InputLimit {
-  std::string_view name;
-  NumberRange range{};
-  bool flag = false;       ///< 0 or 1
-  NumberRange physical{};  ///< a share of light: what is outside of it is read, and warned of
-};
-InputLimit limit_of(std::string_view name);
-InputLimit limit_of_number(std::string_view name);
+// DS_KERNELS: tests/precision compiles the kernels in double.
+using DS_KERNELS::NodeOnHost;
+using DS_KERNELS::Parameter;
+using DS_KERNELS::ParameterKind;
+
+/// What is outside of it is read, and warned of: [0, 1] of a share of light, else all there is.
+inline NumberRange physical_range(const Parameter& parameter) {
+  return parameter.kind == ParameterKind::share ? NumberRange{.least = 0, .most = 1}
+                                                : NumberRange{};
+}
+
+/// What inputs of this name are within, whatever material or texture has them; shares of light in [0, 1].
+NumberRange kept_range(std::string_view input);
 
 /// An input that takes a constant or a texture. `width` is 1 (scalar) or 3 (colour).
 struct InputType {
   std::string_view name;
   int width;
   float default_value;
+  Parameter told{};  ///< what its header says of it
 };
 
 /// A number or switch that is fixed when the scene is read. A material's stand behind its inputs in
@@ -34,6 +38,7 @@ struct InputType {
 struct NumberType {
   std::string_view name;
   float default_value;
+  Parameter told{};  ///< what its header says of it
 };
 
 /// One kind of material or texture, made from the parameter list at the top of its kernel header
@@ -46,9 +51,9 @@ struct NodeType {
   int children;                    ///< materials it chooses among; k_most_children at most
   std::span<const InputType> inputs;
   std::span<const NumberType> numbers;
+  NodeOnHost host{};
 };
 
-// DS_KERNELS: tests/precision compiles the kernels in double.
 using DS_KERNELS::LightInput;
 using DS_KERNELS::LightValue;
 

@@ -34,12 +34,13 @@ void visit_properties(SceneType& material, std::string_view pattern, const Visit
 
 PropertyFit fit_of(const Scene& material, std::string_view pattern) {
   PropertyFit fit;
-  const std::string_view property = pattern.substr(pattern.rfind('.') + 1);
   visit_properties(
       material, pattern, [&](const NodeType& type, const auto&, int input, int number) {
         ++fit.count;
-        // Numbers that have a range are switches and whole ones.
-        fit.flag = fit.flag || (number >= 0 && !limit_of_number(property).range.text().empty());
+        if (number >= 0) {
+          const ParameterKind kind = type.numbers[static_cast<std::size_t>(number)].told.kind;
+          fit.flag = fit.flag || kind == ParameterKind::flag || kind == ParameterKind::whole;
+        }
         fit.colour =
             fit.colour || (input >= 0 && type.inputs[static_cast<std::size_t>(input)].width == 3);
       });

@@ -100,9 +100,13 @@ int width_of(SdlKind kind, const SdlTypeRow& row, const SdlParameter& parameter)
     case SdlType::number: {
       const auto types = kind == SdlKind::material ? material_types() : texture_types();
       const int type = kind == SdlKind::light ? -1 : find_type(types, row.name);
-      const bool fixed =
-          type >= 0 && find_number(types[static_cast<std::size_t>(type)], parameter.name) >= 0;
-      return fixed && !parameter.range.text().empty() ? 0 : 1;
+      if (type < 0) return 1;
+      const NodeType& of = types[static_cast<std::size_t>(type)];
+      const int number = find_number(of, parameter.name);
+      return number >= 0 &&
+                     of.numbers[static_cast<std::size_t>(number)].told.kind == ParameterKind::whole
+                 ? 0
+                 : 1;
     }
     default:
       return 0;
@@ -113,7 +117,7 @@ NumberRange range_of(const SdlParameter& parameter) {
   NumberRange range = parameter.range;
   if (parameter.type != SdlType::scalar_input && parameter.type != SdlType::color_input)
     return range;
-  const NumberRange physical = limit_of(parameter.name).physical;
+  const NumberRange physical = kept_range(parameter.name);
   range.least = std::max(range.least, physical.least);
   range.most = std::min(range.most, physical.most);
   return range;

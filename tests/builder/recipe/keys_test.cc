@@ -3,14 +3,13 @@
 
 #include "builder/recipe/settings.h"
 #include "tests/builder/recipe_folder.h"
+#include "tests/reference_page.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <set>
-#include <sstream>
 
 namespace ds {
 namespace {
@@ -143,33 +142,8 @@ TEST(RecipeKeys, NearMissesAreRecognised) {
   EXPECT_EQ(nearest_key("camera.shutter"), "");
 }
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::istringstream in(text);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(in, line);)
-    lines.push_back(line);
-  return lines;
-}
-
 TEST(RecipeReference, IsWhatTheReadmeHolds) {
-  const std::string readme =
-      read_text_file(std::filesystem::path(DS_SOURCE_DIR) / "recipes/README.md");
-  constexpr std::string_view k_begin = "<!-- reference: begin -->\n",
-                             k_end = "<!-- reference: end -->";
-  const std::size_t begin = readme.find(k_begin), end = readme.find(k_end);
-  ASSERT_NE(begin, readme.npos);
-  ASSERT_NE(end, readme.npos);
-  const std::size_t start = begin + k_begin.size();
-  const auto held = lines_of(readme.substr(start, end - start));
-  const auto wanted = lines_of(recipe_reference());
-  const auto [differs, other] =
-      std::mismatch(held.begin(), held.end(), wanted.begin(), wanted.end());
-  EXPECT_TRUE(differs == held.end() && other == wanted.end())
-      << "put the text of recipe_reference() between the two comments of recipes/README.md; the "
-         "first line that differs\n"
-      << "holds  " << (differs == held.end() ? "nothing" : *differs) << "\n"
-      << "wanted " << (other == wanted.end() ? "nothing" : *other) << "\nThe whole text:\n"
-      << recipe_reference();
+  ds::testing::expect_page_holds("recipes/README.md", recipe_reference());
 }
 
 }  // namespace

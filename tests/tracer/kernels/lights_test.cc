@@ -2,7 +2,7 @@
 // Every light as the packer writes it: what it samples is what its pdf says.
 #include "tests/render/pictures.h"
 #include "tests/tracer/kernels/chi_square.h"
-#include "tracer/device/scene_pack.h"
+#include "tests/tracer/kernels/packed_light.h"
 #include "tracer/kernels/all_nodes.h"
 #include "tracer/kernels/lists.h"
 #include "tracer/render/images.h"
@@ -11,7 +11,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -25,34 +24,6 @@ namespace {
 using namespace kernels;
 
 constexpr double k_pi = std::numbers::pi;
-
-/// The tables of a scene of one light as the kernels' functions take them.
-class PackedLight {
- public:
-  explicit PackedLight(const Scene& scene) {
-    SceneEffects effects = scene_effects(scene, Camera{});
-    packed_ = pack_scene(scene, effects, BvhQuality::low);
-    for (const auto& [from, to] : {std::pair{&packed_.lights, &lights_},
-                                   {&packed_.tables, &tables_},
-                                   {&packed_.triangles, &triangles_}})
-      for (const std::uint32_t word : from->words())
-        to->push_back(std::bit_cast<float>(word));
-  }
-  LightTables tables() const { return {lights_.data(), tables_.data(), triangles_.data()}; }
-  static constexpr uint at = k_light_parameters;
-
- private:
-  PackedScene packed_;
-  std::vector<float> lights_, tables_, triangles_;
-};
-
-/// A scene of one small matte triangle that reaches as far as a unit cube's half.
-Scene lit_scene() {
-  Scene scene;
-  pictures::add_object(scene, pictures::quad({0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}),
-                       pictures::add_matte(scene, {1, 1, 1}));
-  return scene;
-}
 
 /// Turned about x and z, and mirrored, as the SDL reader makes it for image files.
 Mat4 turned() {

@@ -18,22 +18,33 @@ bool is_roughness(std::string_view name) {
   return name.ends_with("roughness");
 }
 
-/// Of a polynomial.
-bool is_coefficient(std::string_view name) {
-  return name == "p1" || name == "p2" || name == "p3";
+/// What stands for numbers without a bound.
+constexpr double k_far = 1e6;
+
+double uniform(std::mt19937& random) {
+  return std::uniform_real_distribution<double>(0, 1)(random);
 }
 
-/// Greatest value an input may sensibly take; the least is 0 but for indices of refraction and coefficients.
-float greatest(std::string_view name) {
-  if (name == "n" || name == "k" || name == "ka") return 10;
-  if (name == "d" || name == "index" || name.ends_with("ior")) return 3;
-  if (is_coefficient(name)) return 30;
-  return 1;
-}
-float least(std::string_view name) {
-  if (name.ends_with("ior")) return 1;
-  if (is_coefficient(name)) return -30;
-  return 0;
+/// Its ends, its default, and anything between: of a wide range as many near 0 as far from it.
+double drawn(const Parameter& told, NumberRange range, float default_value, std::mt19937& random) {
+  const double low = std::max(range.least, -k_far), high = std::min(range.most, k_far);
+  const double choice = uniform(random), share = uniform(random);
+  if (told.kind == ParameterKind::flag) return choice < 0.5 ? 0 : 1;
+  double value = low + (high - low) * share;
+  if (choice < 0.12)
+    value = range.open_least ? low + 1e-6 * (high - low) : low;
+  else if (choice < 0.24)
+    value = range.open_most ? high - 1e-6 * (high - low) : high;
+  else if (choice < 0.3)
+    value = double{default_value};
+  else if (choice < 0.36)
+    value = low + 1e-9 * (high - low);
+  else if (high - low > 100 && choice < 0.68)
+    value = std::max(low, -10.0) + (std::min(high, 10.0) - std::max(low, -10.0)) * share;
+  else if (high - low > 100)
+    value = std::clamp(std::pow(10, 9 * share - 3) * (low < 0 && uniform(random) < 0.5 ? -1 : 1),
+                       low, high);
+  return told.kind == ParameterKind::whole ? std::round(value) : value;
 }
 
 /// Disney's alpha is the square of its roughness.
@@ -93,25 +104,23 @@ std::vector<float> inputs(const Case& material, float alpha) {
 std::vector<float> white_inputs(const Case& material, float alpha) {
   return fill(material, [&](const InputType& input) {
     if (is_roughness(input.name)) return roughness_of(input, alpha);
-    const bool reflectance = input.width == 3 && (limit_of(input.name).physical.most == 1);
-    return reflectance ? 1.0f : seen_value(material, input);
+    return input.told.kind == ParameterKind::share ? 1.0f : seen_value(material, input);
   });
 }
 
-std::vector<float> random_inputs(const Case& material, std::mt19937& random) {
-  std::uniform_real_distribution<float> u(0, 1);
-  std::vector<float> p = fill(material, [&](const InputType& input) {
-    const float low = least(input.name);
-    const float high = greatest(input.name);
-    const float choice = u(random);
-    if (choice < 0.15f) return low;
-    if (choice < 0.3f) return high;
-    if (choice < 0.4f && low == 0) return 1e-9f;
-    return low + (high - low) * u(random);
-  });
-  // All of them are switches.
-  for (std::size_t i = 0; i < material.type->numbers.size(); ++i)
-    p[p.size() - 1 - i] = u(random) < 0.5f ? 0.0f : 1.0f;
+std::vector<float> random_inputs(const Case& material, std::mt19937& random, Shares shares) {
+  std::vector<float> p;
+  for (const InputType& input : material.type->inputs)
+    for (int i = 0; i < input.width; ++i) {
+      const bool share = input.told.kind == ParameterKind::share;
+      const NumberRange range =
+          share && shares != Shares::any ? physical_range(input.told) : input.told.range;
+      const double value = drawn(input.told, range, input.default_value, random);
+      p.push_back(share && shares == Shares::all ? 1.0f : static_cast<float>(value));
+    }
+  for (const NumberType& number : material.type->numbers)
+    p.push_back(
+        static_cast<float>(drawn(number.told, number.told.range, number.default_value, random)));
   return p;
 }
 

@@ -33,10 +33,13 @@ std::vector<Case> all();
 
 /// What pictures::seen_value has, in the layout the functions take, with every roughness so that a lobe's alpha is this.
 std::vector<float> inputs(const Case& material, float alpha);
-/// All reflectances and transmittances (colours that are shares of light) at 1 besides.
+/// All that are shares of light at 1 besides.
 std::vector<float> white_inputs(const Case& material, float alpha);
-/// Anything a file may say, ends of the ranges included.
-std::vector<float> random_inputs(const Case& material, std::mt19937& random);
+/// What those inputs are that are shares of light: what a file may say, what is physical, or 1.
+enum class Shares { any, physical, all };
+/// From the ranges that the header tells, their ends included; 1e6 where there is none.
+std::vector<float> random_inputs(const Case& material, std::mt19937& random,
+                                 Shares shares = Shares::any);
 
 /// A viewer at this cosine of the angle to the normal and this azimuth, radians.
 kernels::Viewer viewer(double cosine, bool outside = true, double azimuth = 0.7);

@@ -41,14 +41,26 @@ namespace ds::DS_KERNELS {
 enum { mix_derived = 0 };
 inline void mix_prepare(const real*, Viewer, real*) {}
 
+/// Where metal2's, whose inputs are behind the two amounts, is right.
+inline constexpr NodeOnHost mix_parts_on_host{.parameters = {},
+                                              .albedo_error = metal2_on_host.albedo_error,
+                                              .albedo_holds = [](const float* p, bool outside) {
+                                                return metal2_albedo_holds(p + 2, outside);
+                                              }};
+
 /// Its inputs in the order that the functions below take them.
 inline const NodeType& mix_type() {
-  static constexpr std::array inputs = {
-      InputType{"amount", 1, 0.5f},     InputType{"inner_amount", 1, 0.5f},
-      InputType{"n", 3, 0.5f},          InputType{"k", 3, 0.5f},
-      InputType{"uroughness", 1, 0.1f}, InputType{"vroughness", 1, 0.1f},
-      InputType{"kd", 3, 0.75f},        InputType{"kr", 3, 1.0f}};
-  static const NodeType type{"mix", "mix", mix_traits, mix_children, inputs, {}};
+  static const std::vector<InputType> inputs = [] {
+    std::vector<InputType> all;
+    for (const char* part : {"mix", "mix", "metal2", "matte", "mirror"}) {
+      const int row = find_type(material_types(), part);
+      const auto& own = material_types()[static_cast<std::size_t>(row)].inputs;
+      all.insert(all.end(), own.begin(), own.end());
+    }
+    all[1].name = "inner_amount";
+    return all;
+  }();
+  static const NodeType type{"mix", "mix", mix_traits, mix_children, inputs, {}, mix_parts_on_host};
   return type;
 }
 

@@ -15,10 +15,13 @@ enum { DS_ALL_TEXTURES(DS_ROW) row_count };
 #include "tracer/base/error.h"
 #include "tracer/device/texture_code.h"
 #include "tracer/kernels/all_nodes.h"
+#include "tracer/scene/texture_bounds.h"
 #include "tracer/scene/type_tables.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <random>
@@ -416,6 +419,80 @@ float texel(ImageWrap wrap, ImageFilter filter, float u, float v) {
              },
              {vec(0, 0, 0), u, v, 0, 0, 0})
       .x;
+}
+
+/// Anything in the range, its ends included; 1e6 for what has none.
+float drawn(const Parameter& told, std::mt19937& random) {
+  std::uniform_real_distribution<double> u(0, 1);
+  const double low = std::max(told.range.least, -1e6), high = std::min(told.range.most, 1e6);
+  const double choice = u(random), share = u(random);
+  double value = low + (high - low) * share;
+  if (choice < 0.15) value = low;
+  if (choice > 0.85) value = high;
+  if (high - low > 100 && choice > 0.4 && choice < 0.8)
+    value = std::clamp(10 * share - 5, low, high);
+  return static_cast<float>(told.kind == ParameterKind::whole ? std::round(value) : value);
+}
+
+ValueBounds told_bounds(const NodeType& type, const Texture& texture,
+                        const std::vector<MaybeBounds>& inputs, const Image& image) {
+  if (texture.image >= 0) return bounds_of_pixels(image);
+  if (type.host.bounds != nullptr)
+    if (const MaybeBounds told = type.host.bounds(inputs, texture.numbers.data())) return *told;
+  ADD_FAILURE() << type.name << " tells no bounds of its values";
+  return {};
+}
+
+// From the rows of each header: nothing is NaN, and no value is beyond the bounds that it tells, which
+// are those that warnings of unphysical materials are made of.
+TEST(Textures, StayWithinTheirBoundsForAnyInput) {
+  std::mt19937 random(9);
+  Image image;
+  image.width = image.height = 3;
+  for (int i = 0; i < 27; ++i)
+    image.rgb.push_back(static_cast<float>(i) * 0.05f);
+  for (const NodeType& type : texture_types()) {
+    for (int trial = 0; trial < 200; ++trial) {
+      Scene scene;
+      scene.images.push_back(image);
+      pictures::add_material(scene, "matte");
+      scene.materials[0].inputs[0] = {{}, pictures::add_texture(scene, type.name, {})};
+      Texture& texture = scene.textures.back();
+      std::vector<MaybeBounds> inputs;
+      float size = 1;
+      for (std::size_t i = 0; i < texture.inputs.size(); ++i) {
+        const Parameter& told = type.inputs[i].told;
+        const float x = drawn(told, random), y = drawn(told, random), z = drawn(told, random);
+        const Vec3 value = type.inputs[i].width == 1 ? Vec3{x, x, x} : Vec3{x, y, z};
+        texture.inputs[i] = {value, -1};
+        inputs.push_back(ValueBounds{value, value});
+        size = std::max({size, std::fabs(x), std::fabs(y), std::fabs(z)});
+      }
+      for (std::size_t i = 0; i < texture.numbers.size(); ++i)
+        texture.numbers[i] = drawn(type.numbers[i].told, random);
+      const ValueBounds bounds = told_bounds(type, texture, inputs, image);
+      for (int i = 0; i < 60; ++i) {
+        const float far = std::pow(10.0f, static_cast<float>(i % 8));
+        std::uniform_real_distribution<float> u(-far, far), share(0, 1);
+        SurfacePoint where = origin();
+        where.position = vec(u(random), u(random), i % 10 == 0 ? 0 : u(random));
+        where.u = u(random);
+        where.v = u(random);
+        where.b1 = share(random);
+        where.b2 = (1 - where.b1) * share(random);
+        const real3 got = run(scene, where);
+        const std::array values{got.x, got.y, got.z};
+        for (std::size_t c = 0; c < 3; ++c) {
+          ASSERT_TRUE(std::isfinite(values[c])) << type.name;
+          const float low = bounds.low[static_cast<int>(c)];
+          const float high = bounds.high[static_cast<int>(c)];
+          const float rounded = 1e-5f * std::max({size, std::fabs(low), std::fabs(high)});
+          ASSERT_GE(values[c], low - rounded) << type.name;
+          ASSERT_LE(values[c], high + rounded) << type.name;
+        }
+      }
+    }
+  }
 }
 
 // What the host takes from a header's traits is what its function reads.

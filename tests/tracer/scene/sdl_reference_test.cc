@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The table of SDL names is what the reader reads and what assets/SDL.md holds.
+#include "tests/reference_page.h"
 #include "tests/tracer/scene/sdl_files_for_tests.h"
 #include "tracer/scene/sdl_parameters.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <set>
-#include <sstream>
 
 namespace ds {
 namespace {
@@ -98,29 +97,8 @@ TEST(SdlTable, RangesAreThoseOfTheReader) {
   });
 }
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::istringstream in(text);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(in, line);)
-    lines.push_back(line);
-  return lines;
-}
-
 TEST(SdlReference, IsWhatThePageHolds) {
-  const std::string page = read_text_file(std::filesystem::path(DS_SOURCE_DIR) / "assets/SDL.md");
-  constexpr std::string_view k_begin = "<!-- reference: begin -->\n";
-  const std::size_t begin = page.find(k_begin);
-  ASSERT_NE(begin, page.npos);
-  const auto held = lines_of(page.substr(begin + k_begin.size()));
-  const auto wanted = lines_of(sdl_reference());
-  const auto [differs, other] =
-      std::mismatch(held.begin(), held.end(), wanted.begin(), wanted.end());
-  EXPECT_TRUE(differs == held.end() && other == wanted.end())
-      << "put the text of sdl_reference() behind the comment of assets/SDL.md; the first line that "
-         "differs\n"
-      << "holds  " << (differs == held.end() ? "nothing" : *differs) << "\n"
-      << "wanted " << (other == wanted.end() ? "nothing" : *other) << "\nThe whole text:\n"
-      << sdl_reference();
+  ds::testing::expect_page_holds("assets/SDL.md", sdl_reference());
 }
 
 }  // namespace

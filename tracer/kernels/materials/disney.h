@@ -36,6 +36,23 @@
 enum { DS_DISNEY_INPUTS(DS_SLOT) DS_DISNEY_NUMBERS(DS_NUMBER_SLOT) disney_end };
 enum { disney_children = 0 };
 DS_TRAITS(disney, k_trait_lobes | k_trait_casts_caustics | k_trait_receives_caustics);
+#ifdef DS_HOOK_HOST
+inline constexpr Parameter disney_parameters[] = {
+    {"basecolor", "colour of the diffuse part, and of the metal's reflection", k_zero_to_one,
+     ParameterKind::share},
+    {"subsurface", "0: diffuse as a rough surface is; 1: flat, as light from below it",
+     k_zero_to_one},
+    {"roughness", "alpha of GGX is its square", k_zero_to_one},
+    {"metallic", "0: a dielectric; 1: a metal, without a diffuse part", k_zero_to_one},
+    {"specular", "reflectance at normal incidence over 0.08", k_zero_to_one},
+    {"speculartint", "of the reflection towards the colour", k_zero_to_one},
+    {"clearcoat", "weight of a second, colourless reflection", k_zero_to_one},
+    {"clearcoatgloss", "0: that is as satin; 1: sharp", k_zero_to_one},
+    {"anisotropic", "0: highlights are round; 1: long along an axis", k_zero_to_one},
+    {"sheen", "more light at grazing, as of cloth", k_zero_to_one},
+    {"sheentint", "of that towards the colour", k_zero_to_one}};
+inline constexpr NodeOnHost disney_on_host{.parameters = disney_parameters, .albedo_error = 0.02};
+#endif
 enum {
   disney_alpha_x,
   disney_alpha_y,

@@ -15,6 +15,15 @@
 enum { DS_GLASS_INPUTS(DS_SLOT) DS_GLASS_NUMBERS(DS_NUMBER_SLOT) glass_end, glass_derived = 0 };
 enum { glass_children = 0 };
 DS_TRAITS(glass, k_trait_lobes | k_trait_casts_caustics);
+#ifdef DS_HOOK_HOST
+inline constexpr Parameter glass_parameters[] = {
+    {"kr", "factor on what is reflected", k_not_negative, ParameterKind::share},
+    {"kt", "factor on what is let through", k_not_negative, ParameterKind::share},
+    {"interiorior", "index of refraction inside, beneath the surface", {.least = 0.01}},
+    {"exteriorior", "index of refraction outside", {.least = 0.01}}};
+inline constexpr NodeOnHost glass_on_host{
+    .parameters = glass_parameters, .most_lost = 0, .albedo_error = 1e-6};
+#endif
 
 DS_FN void glass_prepare(const real* p, Viewer viewer, real* derived) {}
 

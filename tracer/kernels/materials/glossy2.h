@@ -28,6 +28,19 @@
 enum { DS_GLOSSY2_INPUTS(DS_SLOT) DS_GLOSSY2_NUMBERS(DS_NUMBER_SLOT) glossy2_end };
 enum { glossy2_children = 0 };
 DS_TRAITS(glossy2, k_trait_lobes | k_trait_casts_caustics | k_trait_receives_caustics);
+#ifdef DS_HOOK_HOST
+inline constexpr Parameter glossy2_parameters[] = {
+    {"kd", "what the base sends on to all sides", k_not_negative, ParameterKind::share},
+    {"ks", "what the coat reflects at normal incidence", k_not_negative, ParameterKind::share},
+    {"uroughness", "width of the facets along u: alpha of GGX", k_zero_to_one},
+    {"vroughness", "width of the facets along v: alpha of GGX", k_zero_to_one},
+    {"ka", "absorption in the coat, 1 over the unit of d", k_not_negative},
+    {"d", "depth of the coat", k_not_negative},
+    {"index", "refractive index of the coat; ks is not asked then, nor where this is 0",
+     k_not_negative},
+    {"doublesided", "1: the back has the coat too", {}, ParameterKind::flag}};
+inline constexpr NodeOnHost glossy2_on_host{.parameters = glossy2_parameters, .albedo_error = 0.05};
+#endif
 /// What is derived: the parts of a Coat, then what the coat does to light for the viewer.
 enum {
   glossy2_share,

@@ -9,6 +9,12 @@
 enum { DS_MATTE_INPUTS(DS_SLOT) DS_MATTE_NUMBERS(DS_NUMBER_SLOT) matte_end, matte_derived = 0 };
 enum { matte_children = 0 };
 DS_TRAITS(matte, k_trait_receives_caustics);
+#ifdef DS_HOOK_HOST
+inline constexpr Parameter matte_parameters[] = {
+    {"kd", "what is sent on to all sides", k_not_negative, ParameterKind::share}};
+inline constexpr NodeOnHost matte_on_host{
+    .parameters = matte_parameters, .most_lost = 0, .albedo_error = 1e-6};
+#endif
 
 DS_FN void matte_prepare(const real* p, Viewer viewer, real* derived) {}
 

@@ -17,6 +17,20 @@
 enum { DS_METAL2_INPUTS(DS_SLOT) DS_METAL2_NUMBERS(DS_NUMBER_SLOT) metal2_end };
 enum { metal2_children = 0 };
 DS_TRAITS(metal2, k_trait_lobes | k_trait_casts_caustics);
+#ifdef DS_HOOK_HOST
+/// Where n is below 1 and little is absorbed, total reflection sets in at an angle that two facets
+/// do not find.
+inline bool metal2_albedo_holds(const float* p, bool outside) {
+  return p[metal2_k] >= 1 && p[metal2_k + 1] >= 1 && p[metal2_k + 2] >= 1;
+}
+inline constexpr Parameter metal2_parameters[] = {
+    {"n", "index of refraction", k_not_negative},
+    {"k", "absorption: imaginary part of the index", k_not_negative},
+    {"uroughness", "width of the facets along u: alpha of GGX", k_zero_to_one},
+    {"vroughness", "width of the facets along v: alpha of GGX", k_zero_to_one}};
+inline constexpr NodeOnHost metal2_on_host{
+    .parameters = metal2_parameters, .albedo_error = 0.05, .albedo_holds = metal2_albedo_holds};
+#endif
 /// What is derived; see Rescattering.
 enum {
   metal2_share,

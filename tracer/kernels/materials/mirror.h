@@ -9,6 +9,12 @@
 enum { DS_MIRROR_INPUTS(DS_SLOT) DS_MIRROR_NUMBERS(DS_NUMBER_SLOT) mirror_end, mirror_derived = 0 };
 enum { mirror_children = 0 };
 DS_TRAITS(mirror, k_trait_casts_caustics);
+#ifdef DS_HOOK_HOST
+inline constexpr Parameter mirror_parameters[] = {
+    {"kr", "what is reflected", k_not_negative, ParameterKind::share}};
+inline constexpr NodeOnHost mirror_on_host{
+    .parameters = mirror_parameters, .most_lost = 0, .albedo_error = 1e-6};
+#endif
 
 DS_FN void mirror_prepare(const real* p, Viewer viewer, real* derived) {}
 

@@ -10,6 +10,10 @@
 enum { DS_MIX_INPUTS(DS_SLOT) DS_MIX_NUMBERS(DS_NUMBER_SLOT) mix_end };
 enum { mix_children = 2 };
 DS_TRAITS(mix, k_trait_lobes);
+#ifdef DS_HOOK_HOST
+inline constexpr Parameter mix_parameters[] = {{"amount", "share of material2", k_zero_to_one}};
+inline constexpr NodeOnHost mix_on_host{.parameters = mix_parameters};
+#endif
 
 /// `*choice` is used up where `here`, and stretched back to [0, 1).
 DS_FN natural mix_child(const real* p, mask outside, mask here, real* choice) {

@@ -24,6 +24,23 @@
 enum { DS_ROUGHGLASS_INPUTS(DS_SLOT) DS_ROUGHGLASS_NUMBERS(DS_NUMBER_SLOT) roughglass_end };
 enum { roughglass_derived = 0, roughglass_children = 0 };
 DS_TRAITS(roughglass, k_trait_lobes | k_trait_casts_caustics | k_trait_transmits);
+#ifdef DS_HOOK_HOST
+/// Its facets' alone: where several of them would lose little, and none reflects totally.
+inline bool roughglass_albedo_holds(const float* p, bool outside) {
+  return outside && p[roughglass_exteriorior] <= p[roughglass_interiorior] &&
+         p[roughglass_uroughness] <= 0.1f && p[roughglass_vroughness] <= 0.1f;
+}
+inline constexpr Parameter roughglass_parameters[] = {
+    {"kr", "factor on what is reflected", k_not_negative, ParameterKind::share},
+    {"kt", "factor on what is let through", k_not_negative, ParameterKind::share},
+    {"interiorior", "index of refraction inside, beneath the surface", {.least = 0.01}},
+    {"exteriorior", "index of refraction outside", {.least = 0.01}},
+    {"uroughness", "width of the facets along u: alpha of GGX", k_zero_to_one},
+    {"vroughness", "width of the facets along v: alpha of GGX", k_zero_to_one}};
+inline constexpr NodeOnHost roughglass_on_host{.parameters = roughglass_parameters,
+                                               .albedo_error = 0.02,
+                                               .albedo_holds = roughglass_albedo_holds};
+#endif
 
 DS_FN void roughglass_prepare(const real* p, Viewer viewer, real* derived) {}
 

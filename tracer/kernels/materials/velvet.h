@@ -24,6 +24,15 @@ enum { DS_VELVET_INPUTS(DS_SLOT) DS_VELVET_NUMBERS(DS_NUMBER_SLOT) velvet_end };
 enum { velvet_mean, velvet_derived };
 enum { velvet_children = 0 };
 DS_TRAITS(velvet, k_trait_receives_caustics);
+#ifdef DS_HOOK_HOST
+inline constexpr Parameter velvet_parameters[] = {
+    {"kd", "what is sent on", k_not_negative, ParameterKind::share},
+    {"p1", "of the angle by which light turns: weight of its cosine"},
+    {"p2", "weight of the second Legendre polynomial of the cosine"},
+    {"p3", "weight of the third"},
+    {"thickness", "of the layer: its optical depth along the normal", k_not_negative}};
+inline constexpr NodeOnHost velvet_on_host{.parameters = velvet_parameters, .albedo_error = 0.02};
+#endif
 
 /// Of the numbers a texture may give, those beyond this would overflow.
 DS_FN real velvet_held(real x) {

@@ -9,6 +9,16 @@
 #define DS_CHECKERBOARD2D_NUMBERS(NUMBER)
 enum { DS_CHECKERBOARD2D_INPUTS(DS_INPUT_INDEX) checkerboard2d_inputs };
 DS_TRAITS(checkerboard2d, k_trait_uv | k_trait_chooses);
+#ifdef DS_HOOK_HOST
+inline MaybeBounds checkerboard2d_bounds(std::span<const MaybeBounds> inputs,
+                                         const float* numbers) {
+  return either_bounds(inputs[checkerboard2d_texture1], inputs[checkerboard2d_texture2]);
+}
+inline constexpr Parameter checkerboard2d_parameters[] = {{"texture1", "where the sum is even"},
+                                                          {"texture2", "where it is odd"}};
+inline constexpr NodeOnHost checkerboard2d_on_host{.parameters = checkerboard2d_parameters,
+                                                   .bounds = checkerboard2d_bounds};
+#endif
 
 DS_FN real3 checkerboard2d_evaluate(TexturePoint at, DS_GLOBAL float* numbers,
                                     const real3* inputs) {

@@ -10,6 +10,12 @@
 enum { hitpointcolor_offset };
 enum { hitpointcolor_inputs = 0 };
 DS_TRAITS(hitpointcolor, k_trait_colors);
+#ifdef DS_HOOK_HOST
+inline MaybeBounds hitpointcolor_bounds(std::span<const MaybeBounds> inputs, const float* numbers) {
+  return bounds_from_to(0, 1, true);
+}
+inline constexpr NodeOnHost hitpointcolor_on_host{.parameters = {}, .bounds = hitpointcolor_bounds};
+#endif
 
 DS_FN real3 hitpointcolor_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const real3* inputs) {
   const float offset = numbers[hitpointcolor_offset];

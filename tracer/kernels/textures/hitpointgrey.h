@@ -11,6 +11,17 @@
 enum { DS_HITPOINTGREY_NUMBERS(DS_NUMBER_INDEX) hitpointgrey_offset };
 enum { hitpointgrey_inputs = 0 };
 DS_TRAITS(hitpointgrey, k_trait_colors);
+#ifdef DS_HOOK_HOST
+inline MaybeBounds hitpointgrey_bounds(std::span<const MaybeBounds> inputs, const float* numbers) {
+  return bounds_from_to(0, 1, true);
+}
+inline constexpr Parameter hitpointgrey_parameters[] = {{"channel",
+                                                         "-1: luminance, 0: red, 1: green, 2: blue",
+                                                         {.least = -1, .most = 2},
+                                                         ParameterKind::whole}};
+inline constexpr NodeOnHost hitpointgrey_on_host{.parameters = hitpointgrey_parameters,
+                                                 .bounds = hitpointgrey_bounds};
+#endif
 
 DS_FN real3 hitpointgrey_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const real3* inputs) {
   const float offset = numbers[hitpointgrey_offset];

@@ -9,6 +9,9 @@
 #define DS_IMAGEMAP_NUMBERS(NUMBER)
 enum { imagemap_inputs = 0 };
 DS_TRAITS(imagemap, k_trait_uv);
+#ifdef DS_HOOK_HOST
+inline constexpr NodeOnHost imagemap_on_host{};
+#endif
 
 /// The words behind an imagemap instruction.
 enum {

@@ -14,6 +14,18 @@
 enum { DS_MARBLE_NUMBERS(DS_NUMBER_INDEX) marble_numbers };
 enum { marble_inputs = 0 };
 DS_TRAITS(marble, k_trait_position);
+#ifdef DS_HOOK_HOST
+inline MaybeBounds marble_bounds(std::span<const MaybeBounds> inputs, const float* numbers) {
+  return bounds_from_to(0, 1, false);
+}
+inline constexpr Parameter marble_parameters[] = {
+    {"octaves", "of noise, each finer by 1.99", {.least = 0, .most = 32}, ParameterKind::whole},
+    {"roughness", "weight of each octave, of the one before", {.least = -10, .most = 10}},
+    {"scale", "factor on the point"},
+    {"variation", "weight of the noise beside y"}};
+inline constexpr NodeOnHost marble_on_host{.parameters = marble_parameters,
+                                           .bounds = marble_bounds};
+#endif
 
 /// The stone's colour at t in [0, 1]: pale, with a bluish vein around 0.92 and a faint grey one
 /// around 0.42.

@@ -11,6 +11,16 @@
 enum { DS_WRINKLED_NUMBERS(DS_NUMBER_INDEX) wrinkled_numbers };
 enum { wrinkled_inputs = 0 };
 DS_TRAITS(wrinkled, k_trait_position);
+#ifdef DS_HOOK_HOST
+inline MaybeBounds wrinkled_bounds(std::span<const MaybeBounds> inputs, const float* numbers) {
+  return octave_bounds(k_noise_size, 0, numbers[wrinkled_octaves], numbers[wrinkled_roughness]);
+}
+inline constexpr Parameter wrinkled_parameters[] = {
+    {"octaves", "of noise, each finer by 1.99", {.least = 0, .most = 32}, ParameterKind::whole},
+    {"roughness", "weight of each octave, of the one before", {.least = -10, .most = 10}}};
+inline constexpr NodeOnHost wrinkled_on_host{.parameters = wrinkled_parameters,
+                                             .bounds = wrinkled_bounds};
+#endif
 
 DS_FN real3 wrinkled_evaluate(TexturePoint at, DS_GLOBAL float* numbers, const real3* inputs) {
   real3 p = at.position;
